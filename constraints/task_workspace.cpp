@@ -6,7 +6,7 @@
 #include "constraints/list.hpp"
 #include "constraints/pose_margins.hpp"
 #include "engine/core/catalogue.hpp"
-#include "engine/geometry/pose_product.hpp"
+#include "engine/workspace/box_poses.hpp"
 
 namespace pkm {
 namespace {
@@ -18,35 +18,11 @@ const Region& region_of(const EntryContext& context) {
                               did_you_mean(name, names_of(context.regions)));
 }
 
-/// Regular grid of the region's box, including its vertices, at every value of the fixed coordinates.
-/// @param points  number of grid points along each edge
-std::vector<Pose<double>> poses_of(const Region& region, const MechanismInfo& info, int points) {
-  const WorkspacePlan& plan = region.plan;
-  if (!plan.box()) throw std::invalid_argument("task-workspace needs a box, and region '" + region.name + "' has none");
-  const Sweep& sweep = sweep_of(info, plan);
-  std::vector<Pose<double>> poses = {Pose<double>(info.coordinates.size())};
-  for (const int coordinate : sweep.fixed) {
-    const FixedCoordinate how = how_fixed(plan, coordinate);
-    using Kind = FixedCoordinate::Kind;
-    if (how.kind != Kind::value && how.kind != Kind::listed)
-      throw std::invalid_argument(
-          "task-workspace needs a number or a list of them for each fixed coordinate of region '" + region.name + "'");
-    poses = with_each(poses, coordinate, how.kind == Kind::listed ? how.values : std::vector{how.value});
-  }
-  for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis) {
-    const auto& [lower, upper] = (*plan.box())[axis];
-    std::vector<double> values;
-    for (int k = 0; k + 1 < points; ++k) values.push_back(lower + (upper - lower) * k / (points - 1));
-    values.push_back(upper);
-    poses = with_each(poses, sweep.swept[axis], values);
-  }
-  return poses;
-}
-
 std::unique_ptr<const Quantity> make_task_workspace(const EntryContext& context) {
   const Region& region = region_of(context);
   const MechanismInfo& info = context.mechanism.info();
-  const MarginPoses of{poses_of(region, info, static_cast<int>(context.options.integer("points"))), info.modes.front(),
+  const auto points = static_cast<int>(context.options.integer("points"));
+  const MarginPoses of{poses_of_box(region.plan, info, points, "region '" + region.name + "'"), info.modes.front(),
                        region.plan.limits};
   const double required = context.options.number("margin"), sharpness = context.options.number("sharpness");
   return make_quantity(
@@ -78,7 +54,7 @@ ConstraintEntry task_workspace() {
                  .meaning = "required minimum margin"},
                 {.name = "points",
                  .kind = OptionKind::integer,
-                 .initial = std::int64_t{5},
+                 .initial = std::int64_t{kBoxPoints},
                  .lower = 2,
                  .upper = 65,
                  .meaning = "number of tested poses along each edge of the box, including its corners"},

@@ -7,6 +7,7 @@
 #include "engine/config/config_value.hpp"
 #include "engine/config/mechanism_keys.hpp"
 #include "engine/config/study_keys.hpp"
+#include "engine/core/catalogue.hpp"
 
 namespace pkm {
 namespace {
@@ -137,8 +138,10 @@ std::string keys_markdown() {
       "## Motion files\n\nJSON Schema: `pkmopt schema motion`. The keys are those of `[[motion]]` in a study, without "
       "`name` and `follow`.\n\n";
   text +=
-      "## Task files\n\nJSON Schema: `pkmopt schema task`. `[[region]]`, `[[motion]]`, `[[output]]` and the limits of "
-      "`[workspace]` have the keys that they have in a study.\n\n";
+      "## Task files\n\nJSON Schema: `pkmopt schema task`. `[[region]]`, `[[motion]]`, `[[output]]`, `[[motor]]` and "
+      "the "
+      "limits of `[workspace]` have the keys that they have in a study. So has `[[drive_train]]`, but its `joint` is a "
+      "kind of joints: \"all\", \"revolute\" or \"prismatic\".\n\n";
   for (const char* const name : {"task", "origin"}) add_table(*inline_table(*find_named(task_keys().keys, name)), text);
   add_file("Motor files", "motors", motor_file_keys(), text);
   text.pop_back();  // remove the last blank line

@@ -400,11 +400,23 @@ const TableSpec& task_keys() {
       if (key.name == "limits") table.keys.push_back(key);
     return table;
   }();
+  static const TableSpec drive_train = [] {
+    TableSpec table = drive_train_keys();
+    table.meaning = "drive trains of the robots, instead of those of their studies";
+    for (OptionSpec& key : table.keys) {
+      if (key.name == "motor") key.meaning = "name of a [[motor]] of the task: its rotor and its limits";
+      if (key.name != "joint") continue;
+      key.choices = {"all", "revolute", "prismatic"};
+      key.meaning = "the joints of the robots that have this drive train";
+    }
+    return table;
+  }();
   static const TableSpec spec = {.header = "",
                                  .meaning = "task of several robots",
                                  .keys = {table_key("task", task), table_key("origin", origins),
                                           table_key("workspace", limits), tables_key("region", region_keys()),
-                                          tables_key("motion", motion_keys()), tables_key("output", output_table())},
+                                          tables_key("motion", motion_keys()), tables_key("output", output_table()),
+                                          tables_key("drive_train", drive_train), tables_key("motor", motor_keys())},
                                  .noun = "table"};
   return spec;
 }

@@ -49,18 +49,26 @@ class TaskOfRobot {
   TaskOfRobot(const Task& task, const TaskRobot& robot, const Names& coordinates, const Catalogues& catalogues)
       : task_(task), robot_(robot), coordinates_(coordinates), constraints_(catalogues.constraints) {
     const TomlValue* const origins = task.document.find("origin");
-    if (const TomlValue* const own = origins ? origins->find(robot.name) : nullptr)
-      for (const AxisInfo& axis : robot.mechanism->info().coordinates)
-        if (own->find(axis.name))
-          origin_.emplace_back(
-              axis.name, ConfigValue(*own->find(axis.name), task.file_name, "origin." + axis.name).number(axis.unit));
+    const TomlValue* const own = origins ? origins->find(robot.name) : nullptr;
+    for (const AxisInfo& axis : robot.mechanism->info().coordinates) {
+      const TomlValue* const given = own ? own->find(axis.name) : nullptr;
+      origin_.push_back(
+          given ? ConfigValue(*given, task.file_name, "origin." + robot.name + "." + axis.name).number(axis.unit) : 0);
+    }
+    if (task.document.find("drive_train")) why_no_drives_ = why_no_joint_forces(*robot.mechanism);
   }
+
+  const std::vector<double>& origin() const { return origin_; }
+  const Unsupported& why_no_drives() const { return why_no_drives_; }
 
   /// The document of a study of the robot with the regions, motions and limits of the task.
   TomlValue document() const {
-    static const Names kept = {"mechanism", "parameters", "motor",    "drive_train",
-                               "obstacle",  "quantity",   "accuracy", "override"};
-    TomlValue study = filtered(robot_.study, [](const std::string& key) { return contains(kept, key); });
+    static const Names kept = {"mechanism", "parameters", "obstacle", "quantity", "accuracy", "override"};
+    static const Names drives = {"motor", "drive_train"};
+    const bool has_drives = task_.document.find("drive_train");
+    TomlValue study = filtered(robot_.study, [has_drives](const std::string& key) {
+      return contains(kept, key) || (!has_drives && contains(drives, key));
+    });
     if (const TomlValue* const overrides = study.find("override")) {
       TomlValue lists = *overrides;
       for (TomlValue& table : lists.items)
@@ -72,6 +80,10 @@ class TaskOfRobot {
     set_key(study, "region", tables_of_robot("region", &TaskOfRobot::region));
     set_key(study, "motion", tables_of_robot("motion", &TaskOfRobot::motion));
     set_key(study, "output", list_value());
+    if (has_drives && !why_no_drives_) {
+      set_key(study, "motor", value_or(task_.document, "motor", list_value()));
+      set_key(study, "drive_train", drive_trains());
+    }
     return study;
   }
 
@@ -82,22 +94,22 @@ class TaskOfRobot {
 
   /// Converts a value of a coordinate from the frame of the task to that of the robot. A formula remains a formula.
   TomlValue moved(const std::string& coordinate, const TomlValue& value) const {
-    const auto origin = std::ranges::find(origin_, coordinate, &std::pair<std::string, double>::first);
-    if (origin == origin_.end()) return value;
+    const AxisInfo* const axis = find_named(info().coordinates, coordinate);
+    const double origin = origin_[static_cast<std::size_t>(axis - info().coordinates.data())];
+    if (origin == 0) return value;
     TomlValue result = value;
-    const std::string& unit = find_named(info().coordinates, coordinate)->unit;
     switch (value.kind) {
       case Kind::array:
         for (TomlValue& element : result.items) element = moved(coordinate, element);
         return result;
       case Kind::integer:
-        return number_value(static_cast<double>(value.integer) - origin->second);
+        return number_value(static_cast<double>(value.integer) - origin);
       case Kind::number:
-        return number_value(value.number - origin->second);
+        return number_value(value.number - origin);
       case Kind::text: {
         if (value.text == "middle" || value.text == "integrated") return value;
-        if (const auto number = parse_quantity(value.text, unit)) return number_value(*number - origin->second);
-        return text_value("(" + value.text + ") - (" + shortest(origin->second) + ")");
+        if (const auto number = parse_quantity(value.text, axis->unit)) return number_value(*number - origin);
+        return text_value("(" + value.text + ") - (" + shortest(origin) + ")");
       }
       default:
         return value;
@@ -184,6 +196,20 @@ class TaskOfRobot {
     return table;
   }
 
+  /// The drive trains of the task, one table for each joint that they apply to.
+  TomlValue drive_trains() const {
+    TomlValue tables = list_value();
+    for (const TomlValue& table : task_.document.find("drive_train")->items)
+      for (const AxisInfo& joint : info().joints) {
+        const std::string& kind = value_or(table, "joint", {}).text;
+        if (kind != "all" && kind != (joint.turns() ? "revolute" : "prismatic")) continue;
+        TomlValue own = filtered(table, [&](const std::string& key) { return key != "lead" || !joint.turns(); });
+        set_key(own, "joint", text_value(joint.name));
+        tables.items.push_back(own);
+      }
+    return tables;
+  }
+
   /// The constraints of the robot's study that limit poses.
   TomlValue pose_constraints() const {
     TomlValue list = list_value();
@@ -199,76 +225,98 @@ class TaskOfRobot {
   const TaskRobot& robot_;
   const Names& coordinates_;
   const std::vector<ConstraintEntry>& constraints_;
-  std::vector<std::pair<std::string, double>> origin_;
+  std::vector<double> origin_;  ///< by coordinate
+  Unsupported why_no_drives_;
 };
 
-/// A line of the comparison before it is evaluated: an entry of [[output]] or [[constraint]].
+/// A line of the comparison before it is evaluated, with its entry of [[output]] or [[constraint]].
 struct Line {
-  std::string name;
-  bool is_margin = false;
+  TaskValue value;
   TomlValue entry;
-  bool is_users = false;  ///< true for an [[output]] of the task
 };
-
-Names names_of_tables(const TomlValue& document, const std::string& key) {
-  Names names;
-  if (const TomlValue* const tables = document.find(key))
-    for (const TomlValue& table : tables->items) names.push_back(value_or(table, "name", {}).text);
-  return names;
-}
 
 std::vector<Line> lines_of(const Task& task) {
+  using Keys = std::vector<std::array<std::string, 2>>;
   std::vector<Line> lines;
-  const auto add = [&lines](const std::string& name, bool is_margin,
-                            const std::vector<std::array<const char*, 2>>& keys, const char* where = "",
-                            const std::string& what = "") {
-    Line line{name, is_margin, {}};
+  // Adds a line on a region or a motion: kind is "region" or "motion".
+  const auto add = [&lines](const std::string& kind, const std::string& group, const std::string& name,
+                            const Keys& keys) {
+    Line line{{.group = group, .name = group + ": " + name}, {}};
     for (const auto& [key, value] : keys) set_key(line.entry, key, text_value(value));
-    if (*where) set_key(line.entry, where, text_value(what));
+    set_key(line.entry, kind, text_value(group));
     lines.push_back(line);
   };
-  for (const std::string& region : names_of_tables(task.document, "region")) {
-    add(region + ": margin", true, {{"type", "task-workspace"}}, "region", region);
-    add(region + ": conditioning, min", false, {{"type", "conditioning"}, {"statistic", "min"}}, "region", region);
-    add(region + ": conditioning, mean", false, {{"type", "conditioning"}}, "region", region);
-    add(region + ": lti, min", false, {{"type", "quantity"}, {"quantity", "lti"}, {"statistic", "min"}}, "region",
-        region);
-    add(region + ": installation space", false, {{"type", "installation-space"}}, "region", region);
-    add(region + ": footprint", false, {{"type", "footprint"}}, "region", region);
-    add(region + ": height", false, {{"type", "height"}}, "region", region);
+  for (const std::string& region : task.names("region")) {
+    add("region", region, "margin", {{"type", "task-workspace"}});
+    lines.back().value.required = 0;
+    add("region", region, "conditioning, min", {{"type", "conditioning"}, {"statistic", "min"}});
+    add("region", region, "conditioning, mean", {{"type", "conditioning"}});
+    const auto add_quantity = [&](const std::string& name, const std::string& quantity, const std::string& statistic) {
+      add("region", region, name + ", " + statistic,
+          {{"type", "quantity"}, {"quantity", quantity}, {"statistic", statistic}});
+    };
+    add_quantity("lti", "lti", "min");
+    add_quantity("lti", "lti", "mean");
+    add_quantity("accuracy", "accuracy", "max");
+    add_quantity("stiffness", "stiffness", "min");
+    add_quantity("natural frequency", "natural_frequency", "min");
+    add("region", region, "installation space", {{"type", "installation-space"}});
+    add("region", region, "footprint", {{"type", "footprint"}});
+    add("region", region, "height", {{"type", "height"}});
   }
-  for (const std::string& motion : names_of_tables(task.document, "motion")) {
-    add(motion + ": margin", true, {{"type", "motion"}}, "motion", motion);
-    add(motion + ": peak power", false, {{"type", "peak-power"}}, "motion", motion);
+  for (const std::string& motion : task.names("motion")) {
+    add("motion", motion, "margin", {{"type", "motion"}});
+    lines.back().value.required = 0;
+    add("motion", motion, "energy", {{"type", "energy"}});
+    add("motion", motion, "energy, braking recovered", {{"type", "energy"}});
+    set_key(lines.back().entry, "recuperation", {.kind = Kind::flag, .flag = true, .written = "true"});
+    add("motion", motion, "shortest time", {{"type", "cycle-time"}});
   }
-  add("moving mass", false, {{"type", "mass"}});
+  lines.push_back({{.group = "", .name = "moving mass"}, {}});
+  set_key(lines.back().entry, "type", text_value("mass"));
   if (const TomlValue* const outputs = task.document.find("output"))
     for (const TomlValue& each : outputs->items) {
       const TomlValue* const name = each.find("name");
-      lines.push_back({name ? name->text : value_or(each, "type", {}).text, false, each, true});
+      const std::string shown = name ? name->text : value_or(each, "type", {}).text;
+      lines.push_back({{.group = "", .name = shown, .is_users = true}, each});
     }
   return lines;
 }
 
-/// The message of an error without its location.
-std::string sentence_of(const ConfigError& error) {
-  const std::string all = error.what(), place = error.place().key + ": ";
-  const std::size_t at = error.place().key.empty() ? std::string::npos : all.find(place);
-  return at == std::string::npos ? all : all.substr(at + place.size());
+/// The message of an error without its location and without "X is undefined for mechanism NAME: ", so that it is the
+/// same for all robots.
+std::string sentence_of(const ConfigError& error, const std::string& mechanism) {
+  std::string sentence = error.what();
+  const auto remove_until = [&sentence](const std::string& end) {
+    if (const std::size_t at = sentence.find(end); at != std::string::npos) sentence.erase(0, at + end.size());
+  };
+  if (!error.place().key.empty()) remove_until(error.place().key + ": ");
+  remove_until(" is undefined for mechanism " + mechanism + ": ");
+  return sentence;
 }
 
 /// Evaluates the lines that the robot supports, all in one evaluation of its design.
-void evaluate(const TaskRobot& robot, const Study& study, const Names& names, std::vector<TaskValue>& values) {
-  const DesignProblem& problem = *study.problem;
+/// @param names  of the lines in the study
+void evaluate(const TaskRobot& robot, const Names& names, TaskEvaluation& task) {
+  const DesignProblem& problem = *task.study.problem;
   const DesignReport report = problem.report(robot.parameters);
+  // A statistic over a region without feasible poses is the quantity's value for undefined poses.
+  Names empty;
+  const std::vector<Region>& regions = problem.parts().regions;
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    if (!(problem.workspace(robot.parameters, k + 1).volume > 0)) empty.push_back(regions[k].name);
   const auto store = [&](const auto& infos, const std::vector<double>& found) {
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const auto at = std::ranges::find(names, infos[i].name);
       if (at == names.end()) continue;
-      TaskValue& value = values[static_cast<std::size_t>(at - names.begin())];
+      TaskValue& value = task.values[static_cast<std::size_t>(at - names.begin())];
       value.unit = infos[i].unit;
+      if (!value.required && contains(empty, value.group)) {
+        value.reason = "no pose of the region is feasible";
+        continue;
+      }
       value.value = found[i];
-      if (std::isnan(found[i])) value.reason = report.reason.empty() ? "it is not defined there" : report.reason;
+      if (std::isnan(found[i])) value.reason = report.reason.empty() ? "it is undefined" : report.reason;
     }
   };
   store(problem.margins(), report.margins);
@@ -277,6 +325,13 @@ void evaluate(const TaskRobot& robot, const Study& study, const Names& names, st
 
 }  // namespace
 
+std::vector<std::string> Task::names(const std::string& key) const {
+  std::vector<std::string> found;
+  if (const TomlValue* const tables = document.find(key))
+    for (const TomlValue& table : tables->items) found.push_back(value_or(table, "name", {}).text);
+  return found;
+}
+
 Task load_task_toml(const std::string& path) {
   Task task{"", path, parse_toml(read_text_file(path, "a task in TOML"), path, "a task in TOML")};
   const ConfigValue root = ConfigValue(task.document, path, "").described_by(task_keys());
@@ -284,19 +339,30 @@ Task load_task_toml(const std::string& path) {
   task.name =
       table && table->has("name") ? table->find("name")->text("text") : std::filesystem::path(path).stem().string();
   bool is_empty = true;
+  Names names;
   for (const char* const key : {"region", "motion", "output"})
     if (const auto list = root.find(key))
       for (const ConfigValue& each : list->elements(std::string("a list of tables, each written [[") + key + "]]")) {
         is_empty = false;
-        if (key != std::string("output")) each.expect_table().at("name", "a name");
+        if (key == std::string("output")) continue;
+        const ConfigValue name = each.expect_table().at("name", "a name");
+        if (contains(names, name.text("a name")))
+          throw name.refusal("the name '" + name.text("a name") +
+                             "' is used twice; regions and motions need different names");
+        names.push_back(name.text("a name"));
       }
+  for (const ConfigValue& train : root.tables("drive_train"))
+    train.at("joint", "a kind of joints").word({"all", "revolute", "prismatic"});
+  if (root.has("motor") && !root.has("drive_train"))
+    throw root.find("motor")->refusal("no [[drive_train]] of the task uses the motors");
   if (is_empty) throw ConfigError({path, 0, ""}, "no [[region]], [[motion]] or [[output]]", "at least one of them");
   return task;
 }
 
-std::vector<TaskValue> evaluate_task(const Task& task, const TaskRobot& robot, const Names& coordinates,
-                                     const Catalogues& catalogues) {
-  TomlValue document = TaskOfRobot(task, robot, coordinates, catalogues).document();
+TaskEvaluation evaluate_task(const Task& task, const TaskRobot& robot, const Names& coordinates,
+                             const Catalogues& catalogues) {
+  const TaskOfRobot of_robot(task, robot, coordinates, catalogues);
+  TomlValue document = of_robot.document();
   StudyChanges changes;
   for (std::size_t i = 0; i < robot.parameters.size(); ++i) {
     const std::string& name = robot.mechanism->info().parameters[i].name;
@@ -306,32 +372,47 @@ std::vector<TaskValue> evaluate_task(const Task& task, const TaskRobot& robot, c
   const auto read = [&](const TomlValue& study) {
     return read_study_document(study, task.file_name, catalogues, robot.description, changes);
   };
-  Study study = read(document);  // throws for a mistake in the task
-
-  std::vector<TaskValue> values;
+  const TomlValue all = document;
+  for (const char* const kind : {"region", "motion"}) set_key(document, kind, list_value());
+  TaskEvaluation result{read(document), of_robot.origin(), {}, of_robot.why_no_drives()};  // throws for mistakes
+  for (const char* const kind : {"region", "motion"})
+    for (const TomlValue& table : all.find(kind)->items) {
+      TomlValue longer = document, tables = *document.find(kind);
+      tables.items.push_back(table);
+      set_key(longer, kind, tables);
+      try {
+        result.study = read(longer);
+        document = std::move(longer);
+      } catch (const ConfigError& error) {
+        result.refused.emplace_back(value_or(table, "name", {}).text, error);
+      }
+    }
   Names names;
   for (const Line& line : lines_of(task)) {
     names.push_back("line-" + std::to_string(names.size() + 1));
-    TaskValue& value = values.emplace_back();
-    value.name = line.name;
-    value.is_margin = line.is_margin;
-    value.value = std::numeric_limits<double>::quiet_NaN();
+    TaskValue& value = result.values.emplace_back(line.value);
+    if (const auto refused =
+            std::ranges::find(result.refused, value.group, [](const auto& each) { return each.first; });
+        refused != result.refused.end()) {
+      value.reason = sentence_of(refused->second, robot.mechanism->info().name);
+      continue;
+    }
     TomlValue entry = line.entry, longer = document;
     set_key(entry, "name", text_value(names.back()));
-    const char* const key = line.is_margin ? "constraint" : "output";
+    const char* const key = value.required ? "constraint" : "output";
     TomlValue entries = *document.find(key);
     entries.items.push_back(entry);
     set_key(longer, key, entries);
     try {
-      study = read(longer);
+      result.study = read(longer);
       document = std::move(longer);
     } catch (const ConfigError& error) {
-      value.reason = sentence_of(error);
-      value.is_mistake = line.is_users;
+      value.reason = sentence_of(error, robot.mechanism->info().name);
+      value.is_mistake = value.is_users;
     }
   }
-  evaluate(robot, study, names, values);
-  return values;
+  evaluate(robot, names, result);
+  return result;
 }
 
 }  // namespace pkm

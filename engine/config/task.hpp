@@ -3,9 +3,10 @@
 // A task file is a study without a robot. The task may name coordinates that some of the robots lack (a planar robot
 // has no z); the entries for these coordinates are ignored for those robots. Coordinates of a robot that the task does
 // not name have their default values. [origin] gives the position of a robot's base in the frame of the task, if it is
-// not at the origin.
+// not at the origin. The drive trains and motors of a task replace those of the robots' studies.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,9 @@ struct Task {
   std::string name;
   std::string file_name;
   TomlValue document;
+
+  /// Names of the tables under this key, "region" or "motion".
+  std::vector<std::string> names(const std::string& key) const;
 };
 
 /// Reads the file at `path`, and checks its keys. Throws ConfigError.
@@ -33,21 +37,36 @@ struct TaskRobot {
   std::optional<SourceText> description;  ///< its mechanism file
 };
 
-/// One line of a comparison: a value, or a margin, which is >= 0 if the robot can perform this part of the task.
+/// One line of a comparison.
 struct TaskValue {
-  std::string name;  ///< text of the line, such as "region bin, all poses"
+  std::string group;  ///< the region or motion that the value belongs to; "": neither
+  std::string name;   ///< "bin: conditioning, min"
   std::string unit;
-  bool is_margin = false;
-  double value = 0;         ///< the value or margin [SI]; NaN: not available
-  std::string reason;       ///< why it is not available
+  /// The robot can perform this part of the task if the value is at least this; std::nullopt: for information.
+  std::optional<double> required = {};
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not available
+  std::string reason = {};                                  ///< why it is not available
+  std::string limited_by = {};                              ///< the limit that determines the value; "": none is known
+  bool is_users = false;                                    ///< true for an [[output]] of the task
   bool is_mistake = false;  ///< an [[output]] of the task that the robot refuses; a mistake if all robots refuse it
 };
 
-/// Evaluates one robot in the task. For each region: the minimum of all margins in its box, and indices over it. For
-/// each motion: the minimum of the margins and the peak power. In addition, the outputs of the task. The lists of all
-/// robots have the same lines in the same order. Throws ConfigError for a mistake in the task.
+/// A robot in a task.
+struct TaskEvaluation {
+  Study study;                 ///< the task as a study of the robot, in its frame
+  std::vector<double> origin;  ///< position of the robot's base in the frame of the task, by coordinate
+  std::vector<TaskValue> values;
+  Unsupported why_no_drives = {};  ///< why the robot cannot have the drive trains of the task
+  /// Regions and motions that the robot refuses, such as a motion along a coordinate that it lacks. One that all robots
+  /// refuse is a mistake.
+  std::vector<std::pair<std::string, ConfigError>> refused = {};
+};
+
+/// Evaluates one robot in the task. For each region: the minimum of all margins in its box, and statistics over it. For
+/// each motion: the minimum of the margins, energies and the shortest time. In addition, the outputs of the task. The
+/// lists of all robots have the same lines in the same order. Throws ConfigError for a mistake in the task.
 /// @param coordinates  names of the coordinates of all robots that are compared
-std::vector<TaskValue> evaluate_task(const Task& task, const TaskRobot& robot,
-                                     const std::vector<std::string>& coordinates, const Catalogues& catalogues);
+TaskEvaluation evaluate_task(const Task& task, const TaskRobot& robot, const std::vector<std::string>& coordinates,
+                             const Catalogues& catalogues);
 
 }  // namespace pkm

@@ -16,9 +16,9 @@ extern const char pkm_page_plotly[], pkm_page_plotly_end[];
 namespace pkm {
 namespace {
 
-/// Adds the data of a panel to those of a study, unless they are null.
-void add_panel(Json& study, const char* name, Json data) {
-  if (!data.is_null()) study[name] = std::move(data);
+/// Adds the data of a panel to those of a study or of the page, unless they are null.
+void add_panel(Json& to, const char* name, Json data) {
+  if (!data.is_null()) to[name] = std::move(data);
 }
 
 void add_design_panels(Json& study, const ShownDesigns& shown) {
@@ -44,18 +44,19 @@ Json study_data(const PageStudy& page) {
   return study;
 }
 
-std::string report_text(Json studies, const std::string& program) {
+std::string report_text(Json studies, const std::string& program, Json task = {}) {
   Json page = {{"program", program}};
+  add_panel(page, "task", std::move(task));
   page["studies"] = std::move(studies);
   return json_text(page);
 }
 
 }  // namespace
 
-std::string page_data(const std::vector<PageStudy>& studies, const std::string& program) {
+std::string page_data(const std::vector<PageStudy>& studies, const std::string& program, const TaskComparison* task) {
   Json list = Json::array();
   for (const PageStudy& page : studies) list.push_back(study_data(page));
-  return report_text(std::move(list), program);
+  return report_text(std::move(list), program, task ? task_data(*task) : Json());
 }
 
 std::string page_data(const ShownDesigns& shown, const std::string& program) {

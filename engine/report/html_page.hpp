@@ -7,13 +7,16 @@
 #include <vector>
 
 #include "engine/report/shown_designs.hpp"
+#include "engine/results/task_comparison.hpp"
 
 namespace pkm {
 
 /// Data of a page as JSON text: {"program": .., "studies": [..]}. Each study has one member for each panel; panels
 /// without content are omitted.
 /// @param program  name and version of the program, for example "pkmopt 0.1.0 (a1b2c3d)"
-std::string page_data(const std::vector<PageStudy>& studies, const std::string& program);
+/// @param task     a comparison of robots in a task, which the page then shows; null: none. There may be no studies
+std::string page_data(const std::vector<PageStudy>& studies, const std::string& program,
+                      const TaskComparison* task = nullptr);
 
 /// Data of a page for one design without a study. The list "studies" then has one element, with the panels of that
 /// design.

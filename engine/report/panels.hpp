@@ -7,6 +7,7 @@
 
 #include "engine/report/json_text.hpp"
 #include "engine/report/shown_designs.hpp"
+#include "engine/results/task_comparison.hpp"
 
 namespace pkm {
 
@@ -41,5 +42,11 @@ Json mechanism_data(const ShownDesigns& shown);
 Json coupling_data(const ShownDesigns& shown);
 /// Positions, speeds, forces and power of the joints along the study's motions.
 Json motions_data(const ShownDesigns& shown);
+
+/// The table of a comparison in a task, the workspaces, and the loads along the motions.
+Json task_data(const TaskComparison& comparison);
+/// The feasible cells and the boundary surface of a workspace, without fields.
+/// @param found  with the fields `feasible` and `margin`
+Json plain_workspace(const std::string& name, const WorkspaceFields& found);
 
 }  // namespace pkm

@@ -134,11 +134,16 @@ Json workspace_data(const ShownDesigns& shown) {
   return json;
 }
 
+Json plain_workspace(const std::string& name, const WorkspaceFields& found) {
+  Json json = workspace_json(name, found, nullptr, nullptr);
+  json["fields"].clear();
+  return json;
+}
+
 Json workspace_data(const StudyContents& contents) {
   if (!contents.final || !contents.final->map || !contents.final->best) return {};
   const FinalRecord& final = *contents.final;
-  Json best = workspace_json("best", fields_of_map(*final.map, *final.best, final.volume_unit), nullptr, nullptr);
-  best["fields"].clear();  // the margin is 1 or -1 and therefore not meaningful, see fields_of_map()
+  const Json best = plain_workspace("best", fields_of_map(*final.map, *final.best, final.volume_unit));
   return {{"column", best["axes"].back()["name"]}, {"designs", {best}}, {"problems", Json::array()}};
 }
 

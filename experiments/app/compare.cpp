@@ -2,166 +2,164 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <set>
+#include <map>
 
-#include "engine/config/choices.hpp"
-#include "engine/config/study_changes.hpp"
-#include "engine/config/task.hpp"
-#include "engine/config/text_file.hpp"
-#include "engine/core/catalogue.hpp"
-#include "experiments/app/target.hpp"
+#include "engine/core/team.hpp"
+#include "engine/export/task_picture.hpp"
+#include "engine/report/html_page.hpp"
+#include "engine/storage/safe_file.hpp"
+#include "experiments/app/running.hpp"
+#include "experiments/app/task_robots.hpp"
+#include "experiments/app/version.hpp"
+#include "experiments/app/workspace_outputs.hpp"
 
 namespace pkm {
 namespace {
 
 struct CompareArguments {
   std::vector<std::string> robots;
-  std::string task;
-  bool json = false;
+  std::string task, svg, png, html;
+  bool force = false, json = false;
+  int threads = 0;
 };
 
-/// The document of a study with the rows of the catalogues that its design chooses.
-TomlValue with_rows_of_design(const TomlValue& study, const std::string& file_name, const Target& target) {
-  std::vector<std::size_t> rows;
-  for (const Choice& choice : target.study->problem->parts().choices)
-    rows.push_back(choice.row(target.parameters[choice.parameter]));
-  const auto recorded = [&study](const ConfigValue& file) {
-    return recorded_catalogue(study, file.text("the name of a catalogue's file")).value();
-  };
-  return with_rows(study, file_name, read_catalogues(study, file_name, recorded), rows);
-}
+using Robots = std::vector<ComparedRobot>;
 
-/// The robot that an argument names: a mechanism, a study, or a study file, whose best design is used.
-TaskRobot find_robot(const Session& session, const std::string& argument) {
-  const std::filesystem::path path(argument);
-  DesignArguments design;
-  (path.extension() == ".h5" ? design.from : design.target) = argument;
-  const Target target = find_target(session, design);
-  TaskRobot robot{
-      looks_like_file(argument) ? path.stem().string() : argument, target.mechanism, target.parameters, {}, {}};
-  if (target.study) {
-    robot.study = with_rows_of_design(parse_toml(target.study->text, argument), argument, target);
-    robot.description = target.study->description;
-  } else if (looks_like_file(argument)) {
-    robot.study = parse_toml("[mechanism]\nfile = \"mechanism.toml\"\n", argument);
-    robot.description = SourceText{read_text_file(argument, "a mechanism in TOML"), argument};
-  } else {
-    robot.study = parse_toml("[mechanism]\ntype = \"" + argument + "\"\n", argument);
-  }
-  return robot;
-}
-
-std::vector<TaskRobot> find_robots(const Session& session, const std::vector<std::string>& arguments) {
-  std::vector<TaskRobot> robots;
-  for (const std::string& argument : arguments) {
-    TaskRobot robot = find_robot(session, argument);
-    const std::string stem = robot.name;
-    for (int number = 2; find_named(robots, robot.name); ++number) robot.name = stem + "-" + std::to_string(number);
-    robots.push_back(std::move(robot));
-  }
-  return robots;
-}
-
-/// Throws ConfigError if [origin] in the task names a robot that is not compared, or a coordinate that no robot has.
-void check_origins(const Task& task, const std::vector<TaskRobot>& robots,
-                   const std::vector<std::string>& coordinates) {
-  const TomlValue* const origins = task.document.find("origin");
-  if (!origins) return;
-  for (std::size_t i = 0; i < origins->keys.size(); ++i) {
-    const std::string& name = origins->keys[i];
-    const SourceLocation place{task.file_name, origins->items[i].line, "origin." + name};
-    if (!find_named(robots, name))
-      throw ConfigError(place, "the robot '" + name + "'", "one of " + join(names_of(robots)),
-                        nearest_name(name, names_of(robots)));
-    for (const std::string& coordinate : origins->items[i].keys)
-      if (!contains(coordinates, coordinate))
-        throw ConfigError(place, "the coordinate '" + coordinate + "'", "one of " + join(coordinates),
-                          nearest_name(coordinate, coordinates));
-  }
-}
-
-/// The lines of the comparison: element [robot][line]. Throws ConfigError if no robot supports an [[output]] of the
-/// task.
-std::vector<std::vector<TaskValue>> compared(const Task& task, const std::vector<TaskRobot>& robots,
-                                             const Catalogues& catalogues) {
-  std::set<std::string> all;
-  for (const TaskRobot& robot : robots)
-    for (const AxisInfo& axis : robot.mechanism->info().coordinates) all.insert(axis.name);
-  const std::vector<std::string> coordinates(all.begin(), all.end());
-  check_origins(task, robots, coordinates);
-  std::vector<std::vector<TaskValue>> lines;
-  for (const TaskRobot& robot : robots) lines.push_back(evaluate_task(task, robot, coordinates, catalogues));
-  for (std::size_t k = 0; k < lines.front().size(); ++k)
-    if (std::ranges::all_of(lines, [k](const auto& robot) { return robot[k].is_mistake; }))
-      throw ConfigError({task.file_name, 0, "output " + lines.front()[k].name}, lines.front()[k].reason);
-  return lines;
-}
-
-/// The first constraint of a robot whose margin is negative or unknown, so that the robot cannot perform the task; null
-/// if there is none.
-const TaskValue* violated(const std::vector<TaskValue>& lines) {
-  for (const TaskValue& line : lines)
-    if (line.is_margin && !(line.value >= 0)) return &line;
-  return nullptr;
-}
-
-std::string verdict(const std::vector<TaskValue>& lines) {
-  if (const TaskValue* const line = violated(lines))
-    return std::isnan(line->value) ? "unknown: " + line->name : "no: " + line->name;
-  return std::ranges::any_of(lines, &TaskValue::is_margin) ? "yes" : "nothing is asked";
-}
-
-/// The unit of a line, if it is the same for all robots; otherwise "-".
-std::string unit_of_line(const std::vector<std::vector<TaskValue>>& lines, std::size_t k) {
+/// The unit of a line in which the table shows it, if it is the same for all robots; otherwise "-".
+std::string unit_of_line(const Robots& robots, std::size_t k) {
   std::string unit;
-  for (const auto& robot : lines) {
-    if (robot[k].unit.empty()) continue;
-    if (!unit.empty() && unit != robot[k].unit) return "-";
-    unit = robot[k].unit;
+  for (const ComparedRobot& robot : robots) {
+    const TaskValue& line = robot.values[k];
+    if (line.unit.empty() || std::isnan(line.value)) continue;
+    const std::string shown = in_display_unit(0, line.unit).second;
+    if (!unit.empty() && unit != shown) return "-";
+    unit = shown;
   }
   return unit;
 }
 
-void print_table(const std::vector<TaskRobot>& robots, const std::vector<std::vector<TaskValue>>& lines,
-                 Printout& out) {
-  std::vector<Row> rows = {{"", "unit"}}, reasons;
-  for (const TaskRobot& robot : robots) rows[0].push_back(robot.name);
-  rows.push_back({"does the task", ""});
-  for (const auto& robot : lines) rows.back().push_back(verdict(robot));
-  for (std::size_t k = 0; k < lines.front().size(); ++k) {
-    const std::string unit = unit_of_line(lines, k);
-    Row row = {lines.front()[k].name, unit};
-    bool is_available = false;
-    for (std::size_t r = 0; r < lines.size(); ++r) {
-      const TaskValue& value = lines[r][k];
-      const bool has_value = !std::isnan(value.value);
-      is_available = is_available || has_value;
-      const std::string own_unit = unit == "-" && value.unit != "1" ? " " + value.unit : "";
-      row.push_back(has_value ? formatted("%.4g", value.value) + own_unit : "-");
-      if (!value.reason.empty()) reasons.push_back({robots[r].name, value.name, value.reason});
+/// A row of the table; empty if no robot has the value.
+Row row_of_line(const Robots& robots, std::size_t k) {
+  const std::string unit = unit_of_line(robots, k);
+  Row row = {robots.front().values[k].name, unit};
+  bool is_available = false;
+  for (const ComparedRobot& robot : robots) {
+    const TaskValue& line = robot.values[k];
+    const auto [value, own_unit] = in_display_unit(line.value, line.unit);
+    is_available = is_available || !std::isnan(value);
+    row.push_back(
+        std::isnan(value) ? "-" : formatted("%.4g", value) + (unit == "-" && own_unit != "1" ? " " + own_unit : ""));
+  }
+  return is_available ? row : Row();
+}
+
+/// For each reason why some robots lack values: these values, the robots, and the reason. Values of one region or
+/// motion share a row if they are missing for the same reason.
+std::vector<Row> rows_of_reasons(const Robots& robots) {
+  struct Missing {
+    std::string group, robots, reason, values;
+    std::size_t count;
+  };
+  std::vector<Missing> missing;
+  std::map<std::string, std::size_t> size_of_group;
+  for (std::size_t k = 0; k < robots.front().values.size(); ++k) {
+    const std::string &name = robots.front().values[k].name, &group = robots.front().values[k].group;
+    ++size_of_group[group];
+    std::vector<std::pair<std::string, std::vector<std::string>>> found;  // reasons with the robots
+    for (const ComparedRobot& robot : robots) {
+      const std::string& reason = robot.values[k].reason;
+      if (reason.empty()) continue;
+      auto same = std::ranges::find(found, reason, [](const auto& each) { return each.first; });
+      if (same == found.end()) same = found.insert(same, {reason, {}});
+      same->second.push_back(robot.name);
     }
-    if (is_available) rows.push_back(row);
+    for (const auto& [reason, names] : found) {
+      const std::string who = names.size() == robots.size() && names.size() > 1 ? "all robots" : join(names);
+      const auto same = std::ranges::find_if(missing, [&group, &who, &why = reason](const Missing& other) {
+        return other.group == group && other.robots == who && other.reason == why;
+      });
+      if (same == missing.end()) {
+        missing.push_back({group, who, reason, name, 1});
+      } else {
+        same->values += "; " + name.substr(group.empty() ? 0 : group.size() + 2);
+        ++same->count;
+      }
+    }
+  }
+  std::vector<Row> rows;
+  for (const Missing& each : missing) {
+    constexpr std::size_t kMaxNamed = 5;
+    const bool is_all = !each.group.empty() && each.count == size_of_group[each.group];
+    rows.push_back({is_all                   ? each.group + ": all values"
+                    : each.count > kMaxNamed ? each.group + ": " + std::to_string(each.count) + " values"
+                                             : each.values,
+                    each.robots, each.reason});
+  }
+  return rows;
+}
+
+void print_table(const Robots& robots, Printout& out) {
+  std::vector<Row> rows = {{"", "unit"}, {"does the task", ""}};
+  for (const ComparedRobot& robot : robots) {
+    rows[0].push_back(robot.name);
+    rows[1].push_back(robot.verdict());
+  }
+  for (std::size_t k = 0; k < robots.front().values.size(); ++k) {
+    if (const Row row = row_of_line(robots, k); !row.empty()) rows.push_back(row);
+    Row limits = {robots.front().values[k].name + " limited by", ""};
+    for (const ComparedRobot& robot : robots) {
+      const std::string& limit = robot.values[k].limited_by;
+      limits.push_back(limit.empty() ? "-" : limit);
+    }
+    if (std::ranges::any_of(limits.begin() + 2, limits.end(), [](const auto& limit) { return limit != "-"; }))
+      rows.push_back(limits);
   }
   out.add_table("comparison", rows);
-  out.add_table("not available", reasons);
+  out.add_table("not available", rows_of_reasons(robots));
+}
+
+Json robot_json(const ComparedRobot& robot) {
+  Json values = Json::object();
+  for (const TaskValue& line : robot.values)
+    values[line.name] = {{"value", line.value},
+                         {"unit", line.unit},
+                         {"required", json_or_null(line.required)},
+                         {"limited_by", text_or_null(line.limited_by)},
+                         {"reason", text_or_null(line.reason)}};
+  const TaskValue* const violated = robot.violated();
+  const bool is_asked = std::ranges::any_of(robot.values, [](const auto& line) { return line.required.has_value(); });
+  const bool is_known = is_asked && !(violated && std::isnan(violated->value));
+  return {{"name", robot.name},
+          {"does_task", is_known ? Json(!violated) : Json()},
+          {"violated", violated ? Json(violated->name) : Json()},
+          {"values", values}};
 }
 
 void compare(const CompareArguments& arguments, const Session& session, Printout& out) {
   const Task task = load_task_toml(arguments.task);
-  const std::vector<TaskRobot> robots = find_robots(session, arguments.robots);
-  const auto lines = compared(task, robots, session.catalogues);
-  out.add("task", task.name);
-  out.json["robots"] = Json::array();
-  for (std::size_t r = 0; r < robots.size(); ++r) {
-    Json values = Json::object();
-    for (const TaskValue& line : lines[r])
-      values[line.name] = {{"value", line.value}, {"unit", line.unit}, {"reason", text_or_null(line.reason)}};
-    const bool is_asked = std::ranges::any_of(lines[r], &TaskValue::is_margin);
-    out.json["robots"].push_back(
-        {{"name", robots[r].name}, {"does_task", is_asked ? Json(!violated(lines[r])) : Json()}, {"values", values}});
-  }
-  print_table(robots, lines, out);
+  const std::vector<TaskRobot> robots = find_task_robots(session, arguments.robots);
+  std::vector<std::string> files;
+  for (const std::string& file : {arguments.svg, arguments.png, arguments.html})
+    if (!file.empty()) files.push_back(file);
+  std::vector<std::string> inputs = arguments.robots;
+  inputs.push_back(arguments.task);
+  const Existing existing = if_forced(arguments.force);
+  check_outputs(files, inputs, existing);
+  if (!arguments.html.empty()) page_assets();  // throws here, before any evaluation, if this build lacks the page
+  with_team(arguments.threads, [&] {
+    const TaskComparison comparison = compare_in_task(task, robots, session.catalogues);
+    out.add("task", task.name);
+    out.json["robots"] = list_json(comparison.robots, robot_json);
+    print_table(comparison.robots, out);
+    if (!arguments.html.empty())
+      write_file(arguments.html, html_page(page_data({}, program_words(), &comparison)), existing);
+    if (arguments.svg.empty() && arguments.png.empty()) return;
+    const Picture picture = draw_comparison(comparison);
+    if (!arguments.svg.empty()) write_file(arguments.svg, svg_file(picture), existing);
+    if (!arguments.png.empty()) write_file(arguments.png, png_file(picture), existing);
+  });
+  out.json["files"] = files;
+  for (const std::string& file : files) out.text += "wrote " + file + '\n';
 }
 
 }  // namespace
@@ -172,7 +170,7 @@ void add_compare(CLI::App& app, Session& session) {
       "A robot is the name of a built-in mechanism, a mechanism file, a study (its baseline), or a study file F.h5 "
       "(its\n"
       "best design). The task has regions and motions, written like those of a study.\n"
-      "Example: pkmopt compare delta.toml gantry.h5 --task pick.toml",
+      "Example: pkmopt compare delta.toml gantry.h5 --task pick.toml -o comparison.html",
       [&session](const CompareArguments& given) {
         Printout out{.as_json = given.json};
         const SlowStepNotice slow = announce_slow_step(session, "compare is computing, Ctrl-C ends it");
@@ -181,7 +179,14 @@ void add_compare(CLI::App& app, Session& session) {
       });
   add_option(command, "robots MECHANISM|FILE", arguments.robots, "The robots")->required();
   add_option(command, "--task TASK.toml", arguments.task, "The task")->required();
+  add_option(command, "--svg FILE", arguments.svg,
+             "Draw the workspaces with the regions, and the loads along the motions, to this file");
+  add_option(command, "--png FILE", arguments.png, "Draw the same picture to a PNG file");
+  add_option(command, "--html FILE", arguments.html, "Write a page with the comparison to this file");
+  add_output_by_extension(command, {{".html", &arguments.html}, {".png", &arguments.png}, {".svg", &arguments.svg}});
+  command.add_flag("--force", arguments.force, "Overwrite files that exist");
   command.add_flag("--json", arguments.json, "Print one JSON object, numbers in full precision");
+  add_threads(command, arguments.threads);
 }
 
 }  // namespace pkm

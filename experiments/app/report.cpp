@@ -10,6 +10,7 @@
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/recorded_study.hpp"
 #include "experiments/app/running.hpp"
+#include "experiments/app/task_robots.hpp"
 #include "experiments/app/version.hpp"
 #include "experiments/app/workspace_outputs.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 
 struct ReportArguments {
   std::vector<std::string> files;
-  std::string output;
+  std::string output, task;
   bool force = false;
   int threads = 0;
 };
@@ -41,10 +42,22 @@ void report(const ReportArguments& arguments, const Session& session) {
   page_assets();  // throws here, before any evaluation, if this build does not contain the page
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, session));
-  check_outputs({output}, arguments.files, if_forced(arguments.force));
+  std::vector<std::string> inputs = arguments.files;
+  if (!arguments.task.empty()) inputs.push_back(arguments.task);
+  check_outputs({output}, inputs, if_forced(arguments.force));
+  std::optional<Task> task;
+  std::vector<TaskRobot> robots;
+  if (!arguments.task.empty()) {
+    task = load_task_toml(arguments.task);
+    robots = find_task_robots(session, arguments.files);
+  }
   const SlowStepNotice slow = announce_slow_step(session, "evaluating the data of the page");
   std::string page;
-  with_team(arguments.threads, [&] { page = html_page(page_data(studies, program_words())); });
+  with_team(arguments.threads, [&] {
+    std::optional<TaskComparison> comparison;
+    if (task) comparison = compare_in_task(*task, robots, session.catalogues);
+    page = html_page(page_data(studies, program_words(), comparison ? &*comparison : nullptr));
+  });
   write_file(output, page, if_forced(arguments.force));
   std::cout << output << ": " << formatted("%.1f MB", 1e-6 * static_cast<double>(page.size())) << '\n';
 }
@@ -58,6 +71,7 @@ void add_report(CLI::App& app, Session& session) {
       "Example: pkmopt report paper-problem.h5",
       [&session](const ReportArguments& given) { report(given, session); });
   add_option(command, "files F.h5", arguments.files, "Study files; several are also compared")->required();
+  add_option(command, "--task TASK.toml", arguments.task, "Also compare the best designs in this task");
   add_option(command, "-o,--output R.html", arguments.output, "Page to write (default: first file's stem + .html)");
   command.add_flag("--force", arguments.force, "Overwrite the page if it exists");
   add_threads(command, arguments.threads);

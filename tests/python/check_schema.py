@@ -136,7 +136,7 @@ for file in sorted(samples.glob("*.toml")):
 
 # The options of the catalogues have tests of their own.
 CATALOGUES = {"objective", "constraint", "output", "stage"}
-OF_STUDIES = {"region", "motion", "workspace"}  # the same tables as in studies
+OF_STUDIES = {"region", "motion", "workspace", "motor", "drive_train"}  # the same tables as in studies
 for kind in KINDS:
     for path in sorted(set(keys_of(VALIDATORS[kind].schema, ())) - used[kind]):
         if path[0] not in CATALOGUES and not (kind == "task" and path[0] in OF_STUDIES):

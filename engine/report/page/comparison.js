@@ -1,4 +1,4 @@
-// Panel "Comparison" of several studies: results, convergence, best designs, workspaces and drive forces.
+// Panel "Comparison" of several studies: results, convergence, best designs, workspaces and loads along motions.
 
 function studyColour(i) {
   return seriesColours[i % seriesColours.length];
@@ -74,7 +74,25 @@ function bestCurve(study, k) {
   return { x, y };
 }
 
-/** Table of the best designs, one column per study: objectives, outputs, margins of constraints. */
+/** Rows of the results table with peak values and energies along the motions, which all robots have in common units. */
+function motionRows(studies) {
+  const names = [...new Set(studies.flatMap(({ motions }) => (motions?.motions ?? []).map((motion) => motion.name)))];
+  return names.flatMap((name) => {
+    const summaries = studies.map(({ motions }) => motions?.motions.find((m) => m.name === name)?.designs[0]?.summary);
+    const row = (title, key, unit) => {
+      const values = summaries.map((summary) => summary?.[key]);
+      if (values.every((value) => value === undefined)) return [];
+      return [[title, "motion " + name, ...values.map((value) => (value === undefined ? "–" : result(value, unit)))]];
+    };
+    return [
+      ...row("peak power of all drives", "peak_total_power", "W"),
+      ...row("energy without regeneration", "energy_drawn", "J"),
+      ...row("energy with regeneration", "energy", "J"),
+    ];
+  });
+}
+
+/** Table of the best designs, one column per study: objectives, outputs, margins of constraints, loads of motions. */
 function resultsTable(studies) {
   const kinds = ["objective", "output", "constraint"],
     found = new Map(); // rows by kind, name and unit
@@ -92,6 +110,7 @@ function resultsTable(studies) {
     row.kind,
     ...values,
   ]);
+  rows.push(...motionRows(studies));
   return element(
     "div",
     "box",
@@ -118,22 +137,27 @@ function groupByKey(studies, itemsOf) {
   return [...groups.values()].filter((group) => group.length > 1);
 }
 
-/** Plots the maximum drive force over time for motions that have the same name in several studies. */
-function addForcePlots(studies, grid) {
-  const drives = ({ motions }) =>
-    (motions?.motions ?? []).flatMap((motion) =>
-      [...new Set(motions.joints.map((joint) => joint.unit))].flatMap((unit) => {
-        const forces = motion.designs[0]?.forces;
-        if (!forces) return [];
-        const curves = forces.filter((_, j) => motions.joints[j].unit === unit).map(unpack);
-        return [{ key: motion.name + "|" + unit, motion, unit, curves }];
-      }),
-    );
-  for (const group of groupByKey(studies, drives)) {
-    const [title, name, unit, scale] = motionColumns.forces[group[0].unit];
+/** Loads of the best design along each motion: power of all drives; forces and speeds of the joints of each unit. */
+function loadsAlong({ motions }) {
+  return (motions?.motions ?? []).flatMap((motion) => {
+    const columns = ["m", "rad"].flatMap((unit) => [["forces", unit], ["speeds", unit]]);
+    return [["power", ""], ...columns].flatMap(([column, unit]) => {
+      const curves = motion.designs[0]?.[column]?.filter((_, j) => !unit || motions.joints[j].unit === unit).map(unpack);
+      return curves?.length ? [{ key: [motion.name, column, unit].join("|"), motion, column, unit, curves }] : [];
+    });
+  });
+}
+
+/** Plots the loads over time for motions that have the same name in several studies. */
+function addLoadPlots(studies, grid) {
+  for (const group of groupByKey(studies, loadsAlong)) {
+    const { column, unit: kind, motion: first } = group[0];
+    const [title, name, unit, scale] = motionColumns[column][kind],
+      isSum = column === "power";
+    const combined = (values) => (isSum ? values.reduce((sum, value) => sum + value, 0) : Math.max(...values.map(Math.abs)));
     addPlot(grid, {
-      title: `${title}, ${group[0].motion.name}`,
-      caption: "Maximum over all drives of the best designs.",
+      title: `${title}, ${first.name}`,
+      caption: `${isSum ? "Sum" : "Maximum"} over ${isSum ? "all drives" : "these drives"} of the best designs.`,
       size: "half",
       height: 360,
       make: () => ({
@@ -141,14 +165,14 @@ function addForcePlots(studies, grid) {
           type: "scatter",
           mode: "lines",
           x: timesOf(motion),
-          y: Array.from(curves[0], (_, k) => scale * Math.max(...curves.map((curve) => Math.abs(curve[k])))),
+          y: Array.from(curves[0], (_, k) => scale * combined(curves.map((curve) => curve[k]))),
           name: label(study.name),
           line: { color: studyColour(i), width: 2 },
           hovertemplate: `%{y:.4g} ${label(unitText(unit))} at %{x:.4g} s<extra>${label(study.name)}</extra>`,
         })),
         layout: {
           xaxis: axis("time [s]"),
-          yaxis: axis(axisName("maximum " + name, unit), { rangemode: "tozero" }),
+          yaxis: axis(axisName(isSum ? name : "maximum " + name, unit), { rangemode: isSum ? "normal" : "tozero" }),
           legend: { orientation: "h", x: 0, y: -0.2, yanchor: "top" },
         },
       }),
@@ -281,7 +305,7 @@ function showComparison(given, panel) {
       });
   }
   addOverlayPlots(studies, grid);
-  addForcePlots(studies, grid);
+  addLoadPlots(studies, grid);
   const variables = [
     ...new Map(studies.flatMap((s) => s.problem.variables.map((v) => [v.name + "|" + v.unit, v]))).values(),
   ];

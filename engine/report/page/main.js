@@ -53,23 +53,27 @@ function showContents(list) {
 }
 
 /**
- * Shows the panels of a study.
+ * Shows the comparisons of the page and the panels of a study, if there is one.
  * @param point  point of the Pareto front, from chosenPoint(), to be shown instead of the best design; null: none
  */
 function showStudy(report, original, point = null) {
   const study = point ? withPoint(original, point) : original;
-  study.choose = (other) => keepInView("front", () => showStudy(report, original, other));
+  if (study) study.choose = (other) => keepInView("front", () => showStudy(report, original, other));
   removePlots();
   const page = document.getElementById("page");
   page.replaceChildren();
-  showChosenPoint(study);
+  if (study) showChosenPoint(study);
   const shown = [];
+  if (report.task) {
+    shown.push({ id: "task", title: "Task" });
+    showTask(report.task, addPanel(page, "task", "Task"));
+  }
   if (report.studies.length > 1) {
     shown.push({ id: "comparison", title: "Comparison" });
     showComparison(report.studies, addPanel(page, "comparison", "Comparison"));
   }
   for (const { id, title, show } of panels) {
-    if (!study[id]) continue;
+    if (!study?.[id]) continue;
     shown.push({ id, title });
     show(study, addPanel(page, id, id === "summary" || id === "design" ? "" : title));
   }
@@ -107,7 +111,8 @@ function keepInView(id, change) {
 
 function showReport(report) {
   const chooser = document.getElementById("chooser");
-  document.title = report.studies.map((study) => study.name).join(", ") + " – pkmopt";
+  const names = report.studies.length ? report.studies.map((study) => study.name) : [report.task.name];
+  document.title = names.join(", ") + " – pkmopt";
   if (report.studies.length > 1)
     choice(
       chooser,
@@ -116,7 +121,7 @@ function showReport(report) {
       0,
       (i) => showStudy(report, report.studies[i]),
     );
-  else chooser.append(element("span", "title", report.studies[0].name));
+  else chooser.append(element("span", "title", names[0]));
   themeButton(document.getElementById("theme"));
   showStudy(report, report.studies[0]);
   addEventListener("keydown", stepPanels);

@@ -142,8 +142,15 @@ function sceneAxis(title, range, relativeLength = 1) {
  * @param distance  relative distance of the camera, from addPlot()
  */
 function workspaceScene(designs, order, distance) {
-  const axes = order.map((k) => designs[0].axes[k]);
-  const ranges = order.map((k) => sharedRange(designs, k));
+  return sceneOf(
+    order.map((k) => designs[0].axes[k]),
+    order.map((k) => sharedRange(designs, k)),
+    distance,
+  );
+}
+
+/** 3-D scene with these ranges of the axes, in displayed units. */
+function sceneOf(axes, ranges, distance) {
   const toScale = axes.every((a) => a.unit === "m");
   const extents = ranges.map(([low, high]) => high - low),
     largest = Math.max(...extents);
