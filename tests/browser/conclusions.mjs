@@ -7,9 +7,10 @@ import { folderOf, Page, pkmopt, reportOf, studies } from "./page.mjs";
 const folder = folderOf("conclusions");
 const { file, html } = reportOf(path.join(studies, "quadrupteron.toml"), folder);
 const page = await Page.open(html);
-const [result, active, next] = await page.page.locator(".conclusions dd").allInnerTexts();
+const [result, active, workspace, next] = await page.page.locator(".conclusions dd").allInnerTexts();
 assert.match(result, /workspace-volume .*%.*conditioning .*for the compromise, compared with the baseline/);
 assert.match(active, /active|bound|stage/);
+assert.match(workspace, /^Extent along x \d+ mm, y \d+ mm, phi \d+ deg; conditioning: minimum 0\.\d+, mean 0\.\d+\.$/);
 assert.match(next, /\w/);
 
 // The drawing labels the dimensions that are variables.

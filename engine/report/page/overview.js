@@ -127,15 +127,55 @@ function nextSentence(study) {
 
 const code = (text) => element("code", "", text);
 
-/** Conclusions: result, active constraints, next step. */
+/** Size of the workspace of the shown design, and minimum and mean of the indices of its poses; null if unknown. */
+function workspaceSentence({ workspace }) {
+  const packed = workspace?.designs[0];
+  if (!packed) return null;
+  const cells = (packed.cells ??= new Cells(packed));
+  const extents = drawingOrder(cells.axes).map((k) => {
+    const [low, high] = feasibleRange([cells], k),
+      { name, unit, step } = cells.axes[k];
+    return `${name} ${shownQuantity(high - low + step, unit, 3)}`;
+  });
+  const indices = ["conditioning", "lti"].flatMap((name) => {
+    const values = Array.from(cells.values.get(name) ?? []).filter(Number.isFinite);
+    if (!values.length) return [];
+    const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+    return [`; ${name}: minimum ${digits(rangeOf(values)[0], 3)}, mean ${digits(mean, 3)}`];
+  });
+  const solids = (cells.solids ?? []).map((solid) => "; " + solidText(solid));
+  return ["Extent along " + extents.join(", "), ...solids, ...indices, "."];
+}
+
+/** For each motion, whether the shown design can follow it, and its loads; null without motions. */
+function motionsSentence({ motions }) {
+  if (!motions) return null;
+  const most = (values) => Math.max(...values);
+  return motions.motions.map(({ name, samples, designs: [{ summary }] }, k) => {
+    const loads = [
+      summary.peak_total_power === undefined ? "" : `peak power ${quantity(summary.peak_total_power, "W", 3)}`,
+      summary.energy_drawn === undefined ? "" : `energy ${quantity(summary.energy_drawn, "J", 3)}`,
+      summary.peak_motor_torque
+        ? `motors up to ${quantity(most(summary.peak_motor_torque), "N m", 3)} ` +
+          `(RMS ${quantity(most(summary.rms_motor_torque), "N m", 3)}) and ${quantity(most(summary.peak_motor_speed), "rad/s", 3)}`
+        : "",
+    ].filter(Boolean);
+    const verdict = summary.infeasible ? `infeasible at ${summary.infeasible} of ${samples} samples` : "feasible";
+    return `${k ? "; " : ""}${name}: ${[verdict, ...loads].join(", ")}` + (k + 1 === motions.motions.length ? "." : "");
+  });
+}
+
+/** Conclusions: result, active constraints, workspace, motions, next step. */
 function conclusions(study) {
   const list = element("dl", "conclusions");
   for (const [title, sentence] of [
     ["Result", resultSentence(study)],
     ["Active constraints", activeSentence(study)],
+    ["Workspace", workspaceSentence(study)],
+    ["Motions", motionsSentence(study)],
     ["Next step", nextSentence(study)],
   ])
-    list.append(element("dt", "", title), element("dd", "", ...sentence));
+    if (sentence) list.append(element("dt", "", title), element("dd", "", ...sentence));
   return list;
 }
 
