@@ -64,9 +64,4 @@ std::optional<std::vector<double>> project_onto_active_constraints(const std::ve
                                                                    std::span<const double> margin_jacobian,
                                                                    double activity_tolerance);
 
-/// Minimises |A x - b| over x >= 0 (NNLS, Lawson and Hanson 1974). Throws std::runtime_error if it does not converge.
-/// @param columns  columns of A, each as long as b
-std::vector<double> non_negative_least_squares(const std::vector<std::vector<double>>& columns,
-                                               const std::vector<double>& b);
-
 }  // namespace pkm

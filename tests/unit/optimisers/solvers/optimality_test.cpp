@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "engine/math/non_negative_least_squares.hpp"
 #include "engine/problem/evaluator.hpp"
 #include "tests/unit/optimisers/known_problems.hpp"
 
