@@ -14,6 +14,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/math/eigen_solvers.hpp"
 #include "engine/mechanism/availability.hpp"
+#include "engine/mechanism/redundant_drives.hpp"
 #include "engine/mechanism/sampled_poses.hpp"
 
 namespace pkm {
@@ -115,10 +116,16 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
        "constraint clearance or limit clearance_min; not for exact columns and certified bounds",
        "needs two links that could collide: limbs with `radius`, or [[link]]");
   tell(mechanism.links(), "pictures", "", "no limb has a radius, and there is no [[link]]");
-  const Unsupported no_forces = why_no_joint_forces(mechanism);
-  tell(!no_forces, "forces and coupling", no_forces ? "" : why_no_masses(mechanism), no_forces.value_or(""));
-  tell(mechanism.reactions(), "forces in the joints", "pkmopt dynamics and trajectory --reactions",
-       mechanism.why_no_reactions());
+  const Unsupported no_forces = why_no_drive_forces(mechanism), no_coupling = why_no_joint_forces(mechanism);
+  const bool is_redundant = !no_forces && no_coupling;
+  if (!is_redundant) {
+    tell(!no_forces, "forces and coupling", no_forces ? "" : why_no_masses(mechanism), no_forces.value_or(""));
+  } else {
+    tell(true, "forces of the drives", why_no_masses(mechanism), "");
+    tell(false, "inertia and coupling of the joints", "", *no_coupling);
+  }
+  tell(mechanism.reactions() && !is_redundant, "forces in the joints", "pkmopt dynamics and trajectory --reactions",
+       is_redundant ? *no_coupling : mechanism.why_no_reactions());
   out << format_titled_table("available", can);
   out << format_titled_table("not available, and why", cannot);
 }

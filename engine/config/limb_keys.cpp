@@ -72,10 +72,20 @@ Keys geometry_keys() {
                                              .required = true,
                                              .choices = {"x", "y", "z"},
                                              .meaning = "axis of rotation"}}};
+  const OptionSpec base = point_key("base", "base point A [x, y, z]"),
+                   platform = point_key(
+                       "platform", "platform's point B [x, y, z] in the platform's frame, or that of `platform_in`");
+  static const TableSpec ends = {.meaning = "end points of one copy", .keys = {required(base), required(platform)}};
   return {
-      table_key("copies", copies, "the limb is copied, rotated about an axis: arm1, arm2, .."),
-      required(point_key("base", "base point A [x, y, z]")),
-      point_key("platform", "platform's point B [x, y, z] in the platform's frame, or that of `platform_in`"),
+      {.name = "copies",
+       .kind = OptionKind::any_of,
+       .meaning = "the limb is copied, rotated about an axis or with other end points: arm1, arm2, ..",
+       .parts = {table_key("", copies),
+                 {.kind = OptionKind::list,
+                  .meaning = "end points of each copy",
+                  .parts = {{.kind = OptionKind::table, .meaning = "end points of one copy", .table = &ends}}}}},
+      base,
+      platform,
       frames_key("base_in",
                  "frame of the base point and of all directions of the drive, or a list of frames, one for each copy; "
                  "default: the base"),
@@ -158,7 +168,13 @@ std::vector<TableVariant> drives() {
        .meaning = "unit of the joints"},
       formulas_key("closures", "1", 0, "loop-closure equations in the pose and the joints' names, one for each joint")};
   return {{"telescope", "leg of variable length",
-           all({geometry_keys(), mass_keys("cylinder"), mass_keys("piston"), {leg_section_key()}})},
+           all({geometry_keys(),
+                mass_keys("cylinder"),
+                mass_keys("piston"),
+                {leg_section_key(),
+                 formulas_key("tension", "N", 2,
+                              "range [minimum, maximum] of the tension: the leg is a straight, massless cable, which "
+                              "only pulls")}})},
           {"slider", "slide on a rail, alone or with a rod or two links",
            all({geometry_keys(),
                 mass_keys("slider"),

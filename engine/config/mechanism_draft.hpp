@@ -14,6 +14,7 @@
 
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/mechanism_scope.hpp"
+#include "engine/generic/performance/performance.hpp"
 
 namespace pkm {
 
@@ -95,6 +96,8 @@ struct NamedLimb {
   std::string begin_on = kBaseFrame;  ///< name of the body to which A or the rail is attached
   std::string end_on = "";            ///< name of the body to which the end B is attached; "": unspecified
 
+  /// Minimum and maximum tension [N] of a cable; std::nullopt: the limb is no cable.
+  std::optional<std::array<limbs::Term, 2>> tension = {};
   std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]; std::nullopt: not given
   /// Stiffnesses of a round tube: axial E A [N], bending E I and torsional G J [N m^2]; and the area A of its
   /// cross-section [m^2].
@@ -215,10 +218,20 @@ std::optional<LimbForce> force_of(const NamedLimb& limb);
 bool defines_quantity(const ConfigValue& root, const ConfigValue* study, const std::string& name);
 /// Adds the transmission indices `lti`, `lti_input` and `lti_output` as quantities, if they are defined for the limbs.
 void add_transmission(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
+/// Adds a quantity of the pose that mechanisms have without a [[quantity]]. If a file or study uses its name for its
+/// own purposes, the quantity is listed as undefined instead.
+void add_predefined_quantity(const ConfigValue& root, const ConfigValue* study, const generic::NamedTerm& quantity,
+                             MechanismDraft& draft);
 /// Adds the quantities of engine/generic/performance/performance.hpp whose data are given by the mechanism file or by
 /// the study.
 /// @param study  null if there is none
 void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
+/// Reads the limits of a cable's tension.
+void read_tension(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
+/// Reads the table [forces]: how redundant drives share a load, and the loads that the cables have to balance. Adds the
+/// margin and the quantities of the cables (engine/generic/performance/tension_limits.hpp).
+/// @param study  null if there is none
+void add_forces(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
 /// Reads the elastic moduli of a limb's cross-sections, and the play of its joints.
 void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
 /// Compliance of the limb's end along the line of its rod or leg, due to rods, crank and slider [m/N].

@@ -127,6 +127,41 @@ const TableSpec& frame_table() {
   return spec;
 }
 
+const TableSpec& forces_table() {
+  static const TableSpec accelerations = {
+      .meaning = "accelerations of coordinates",
+      .keys = {},
+      .named = {formula_key("", kUnitOfEntry, "maximum magnitude [m/s^2 or rad/s^2]")},
+      .noun = "coordinate"};
+  static const TableSpec spec = {
+      .header = "[forces]",
+      .meaning = "how redundant drives share a load, and the loads that cables have to balance",
+      .keys = {{.name = "distribution",
+                .kind = OptionKind::word,
+                .initial = "least-norm",
+                .choices = {"least-norm", "least-maximum", "centre"},
+                .meaning = "choice of the forces of redundant drives: minimum sum of squares, minimum of the maximum, "
+                           "or analytic centre of the allowed tensions"},
+               formulas_key("relative_to", kUnitOfEntry, 0,
+                            "one force or torque for each joint, by which `least-norm` and `least-maximum` divide the "
+                            "forces; default: the same for all"),
+               {.name = "cables",
+                .kind = OptionKind::word,
+                .initial = "wrench-feasible",
+                .choices = {"wrench-feasible", "wrench-closure"},
+                .meaning = "condition of feasible poses: the allowed tensions balance all loads, or some tensions "
+                           "balance any load"},
+               formulas_key("payload", "kg", 2, "range [minimum, maximum] of a payload, a point mass; default: none"),
+               point_key("payload_at", "position of the payload in the platform's frame; default: its origin"),
+               formulas_key("force", "N", 3,
+                            "maximum magnitudes of an external force along x, y, z, in both directions, at the "
+                            "platform's centre of mass; default: 0"),
+               formulas_key("moment", "N m", 3, "maximum magnitudes of an external moment about x, y, z; default: 0"),
+               table_key("acceleration", accelerations,
+                         "maximum magnitudes of accelerations of coordinates, in both directions; default: 0")}};
+  return spec;
+}
+
 const TableSpec& survey_table() {
   static const TableSpec fixed = {.meaning = "default values of coordinates",
                                   .keys = {},
@@ -360,10 +395,11 @@ const TableSpec& mechanism_keys() {
                table_key("masses", masses_table()), required(table_key("platform", platform_table())),
                tables_key("frame", frame_table()), table_key("survey", survey_table()),
                table_key("modes", modes_table()), table_key("let", let), required(tables_key("limb", limb_keys())),
-               table_key("inputs", inputs_table()), table_key("accuracy", accuracy_keys()),
-               tables_key("quantity", quantity_keys()), tables_key("limit", limit_table()),
-               tables_key("margin", margin_table()), tables_key("design", design_table()),
-               tables_key("link", link_table()), tables_key("body", body_table()), tables_key("joint", joint_table())},
+               table_key("inputs", inputs_table()), table_key("forces", forces_table()),
+               table_key("accuracy", accuracy_keys()), tables_key("quantity", quantity_keys()),
+               tables_key("limit", limit_table()), tables_key("margin", margin_table()),
+               tables_key("design", design_table()), tables_key("link", link_table()), tables_key("body", body_table()),
+               tables_key("joint", joint_table())},
       .noun = "table"};
   return spec;
 }

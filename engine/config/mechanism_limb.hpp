@@ -11,7 +11,7 @@
 
 namespace pkm {
 
-/// One of the rotated copies that a [[limb]] describes; if it has no key `copies`, the limb itself.
+/// One of the copies that a [[limb]] describes; if it has no key `copies`, the limb itself.
 struct LimbCopy {
   const ConfigValue& table;
   MechanismDraft& draft;
@@ -20,6 +20,7 @@ struct LimbCopy {
   std::string name;                   ///< name of this copy: "arm2"
   limbs::Rotation turn;               ///< rotation that maps the geometry in the file to this copy
   const NamedFrame &base, &platform;  ///< the frames of the limb's ends
+  ConfigValue ends;  ///< table that contains its `base` and `platform`: that of the limb, or one of `copies`
 
   limbs::Term length(const char* key, const char* expected) const;
   /// Reads a direction and rotates it with the copy.

@@ -52,7 +52,8 @@ void refuse_known(const ConfigValue& table, const std::string& name, const Mecha
 /// Reads the rotation matrix of each copy of a limb; if the limb has no copies, the result contains only the identity.
 std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) {
   const auto number = [&draft](double x) { return Term(draft.model.graph, x); };
-  const auto copies = table.find_table("copies");
+  const auto given = table.find("copies");
+  const auto copies = given && given->is_table() ? table.find_table("copies") : std::nullopt;
   if (!copies) return {limbs::rotation_about(2, number(0), number(1))};
   const auto about = static_cast<std::size_t>(copies->at("about", "an axis, \"x\", \"y\" or \"z\"").word()[0] - 'x');
   std::vector<double> angles;
@@ -88,6 +89,19 @@ std::vector<const NamedFrame*> frames_of(const ConfigValue& table, const char* k
   return found;
 }
 
+/// The tables that contain the points `base` and `platform`: those of a list of `copies`, or that of the limb itself.
+std::vector<ConfigValue> ends_of(const ConfigValue& table) {
+  const auto copies = table.find("copies");
+  if (!copies || !copies->is_list()) return {table};
+  for (const char* const key : {"base", "platform", "end"})
+    if (const auto both = table.find(key))
+      throw both->refusal(std::string("`") + key + "` is in each table of `copies`; give it either there or here");
+  std::vector<ConfigValue> ends;
+  for (const ConfigValue& element : copies->elements()) ends.push_back(element.table());
+  if (ends.empty()) throw copies->error("at least one table { base = [..], platform = [..] }");
+  return ends;
+}
+
 bool on_platform(const ConfigValue& table, const std::string& key) { return table.word_at(key) == "platform"; }
 
 limbs::Ends read_ends(const LimbCopy& copy) {
@@ -102,7 +116,7 @@ limbs::Ends read_ends(const LimbCopy& copy) {
   const Vector3 base =
       copy.base.at.origin +
       copy.base.at.rotation *
-          (copy.turn * draft.scope.point_of_design(table.at("base", "the base point [x, y, z]"), copy.group));
+          (copy.turn * draft.scope.point_of_design(copy.ends.at("base", "the base point [x, y, z]"), copy.group));
   const auto reached = [&] {
     if (end) {
       if (table.has("copies"))
@@ -110,7 +124,7 @@ limbs::Ends read_ends(const LimbCopy& copy) {
             "a limb with `copies` needs `platform` instead of `end`, which is a single point in the base's frame");
       return draft.scope.point(*end, copy.group);
     }
-    const ConfigValue platform = table.at("platform", "the platform's point [x, y, z]");
+    const ConfigValue platform = copy.ends.at("platform", "the platform's point [x, y, z]");
     return copy.platform.at.origin +
            copy.platform.at.rotation * (copy.turn * draft.scope.point_of_design(platform, copy.group));
   };
@@ -249,6 +263,7 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
   add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);
   draft.limbs.push_back(named(copy, at, limb));
   for (const auto& [point, place] : draft.limbs.back().points) draft.scope.add_point(copy.name + "." + point, place);
+  read_tension(copy.table, draft.limbs.back(), draft);
   read_elasticity(copy.table, draft.limbs.back(), draft);
   for (const LimbPart& part : draft.limbs.back().parts) add_part_body(copy.table, copy.name, part, draft);
   add_limb_links(copy, at, limb);
@@ -278,11 +293,15 @@ void read_limb(const ConfigValue& value, MechanismDraft& draft) {
     return read_as_limb(
         name, [&] { read_formula_limb(table, name, draft); }, draft);
   const std::vector<Rotation> turns = turns_of(table, draft);
-  const auto base = frames_of(table, "base_in", kBaseFrame, turns.size(), draft),
-             platform = frames_of(table, "platform_in", kPlatformFrame, turns.size(), draft);
-  for (std::size_t i = 0; i < turns.size(); ++i) {
+  const std::vector<ConfigValue> ends = ends_of(table);
+  const std::size_t copies = ends.size() * turns.size();
+  const auto base = frames_of(table, "base_in", kBaseFrame, copies, draft),
+             platform = frames_of(table, "platform_in", kPlatformFrame, copies, draft);
+  for (std::size_t i = 0; i < copies; ++i) {
     const std::string number = table.has("copies") ? std::to_string(i + 1) : "";
-    const LimbCopy copy{table, draft, drive, name, name + number, turns[i], *base[i], *platform[i]};
+    const LimbCopy copy{table,    draft,         drive,
+                        name,     name + number, turns[i % turns.size()],
+                        *base[i], *platform[i],  ends[i / turns.size()]};
     read_as_limb(
         copy.name, [&] { read_copy(copy, number); }, draft);
   }

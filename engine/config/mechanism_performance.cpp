@@ -50,9 +50,9 @@ class Performance {
   }
 
  private:
-  /// The reason why the Jacobian has no inverse; "" if it has one.
+  /// The reason why the Jacobian has neither an inverse nor a pseudo-inverse; "" if it has one.
   std::string why_no_inverse() const {
-    if (joints_ == model_.inputs.coordinates) return "";
+    if (joints_ >= model_.inputs.coordinates) return "";
     return "there are " + std::to_string(joints_) + " joints for " + std::to_string(model_.inputs.coordinates) +
            " coordinates";
   }
@@ -63,16 +63,7 @@ class Performance {
   void add(const std::vector<NamedTerm>& terms) {
     for (const NamedTerm& term : terms) add(term);
   }
-  void add(const NamedTerm& term) {
-    if (draft_.scope.knows(term.name) || defines_quantity(root_, study_, term.name))
-      return lack(term.name, "the mechanism file already uses the name " + term.name);
-    const auto of_pose = formula_quantity(term.name, term.unit, term.meaning, model_.quantities.size());
-    model_.quantities.push_back(term.value.node());
-    model_.info.quantities.push_back(
-        {.name = term.name, .unit = term.unit, .meaning = term.meaning, .of_pose = of_pose});
-    draft_.scope.add(root_, term.name, term.value.node());
-    draft_.scope.mark_as_defined(term.value.node());
-  }
+  void add(const NamedTerm& term) { add_predefined_quantity(root_, study_, term, draft_); }
 
   std::string force_unit(std::size_t joint) const { return model_.info.joints[joint].turns() ? "N m" : "N"; }
   const NamedLimb* limb_of(std::size_t joint) const {
@@ -305,6 +296,21 @@ class Performance {
 };
 
 }  // namespace
+
+void add_predefined_quantity(const ConfigValue& root, const ConfigValue* study, const NamedTerm& quantity,
+                             MechanismDraft& draft) {
+  const auto& [name, unit, meaning, value] = quantity;
+  generic::Model& model = draft.model;
+  if (draft.scope.knows(name) || defines_quantity(root, study, name)) {
+    model.info.undefined_quantities.push_back({name, "the mechanism file already uses the name " + name});
+    return;
+  }
+  const auto of_pose = formula_quantity(name, unit, meaning, model.quantities.size());
+  model.quantities.push_back(value.node());
+  model.info.quantities.push_back({.name = name, .unit = unit, .meaning = meaning, .of_pose = of_pose});
+  draft.scope.add(root, name, value.node());
+  draft.scope.mark_as_defined(value.node());
+}
 
 void add_performance(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft) {
   Performance(root, study, draft).add_all();

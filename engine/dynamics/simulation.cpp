@@ -70,7 +70,7 @@ class Integrator {
   std::string complete(SimulationState& state) const {
     const PoseDynamics<double> d = setup_.dynamics({state.pose, state.velocity});
     if (!d.assembles) return at(state.time) + kOutOfReach;
-    if (is_singular(d.J)) return at(state.time) + "the mechanism is at a singularity";
+    if (d.J.rows() >= d.J.cols() && is_rank_deficient(d.J)) return at(state.time) + "the mechanism is at a singularity";
     state.acceleration = acceleration(d, joint_forces(d, state.time, state.velocity).first, setup_.wrench);
     state.kinetic_energy = kinetic_energy(d, state.velocity);
     if (!std::isfinite(max_norm(state.acceleration))) return at(state.time) + "the acceleration is not finite";

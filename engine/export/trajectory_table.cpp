@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "engine/export/tables.hpp"
+#include "engine/mechanism/redundant_drives.hpp"
 
 namespace pkm {
 namespace {
@@ -19,7 +20,7 @@ CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajecto
   for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.coordinates, suffix);
   for (const char* suffix : {"", "_speed", "_acceleration"}) add_names(info.joints, suffix);
   for (const char* name : {"conditioning", "feasible", "reason"}) columns.emplace_back(name);
-  if (!why_no_joint_forces(mechanism)) {
+  if (!why_no_drive_forces(mechanism)) {
     for (const char* suffix : {"_force", "_power"}) add_names(info.joints, suffix);
     columns.emplace_back("power");
   }
@@ -46,7 +47,7 @@ CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajecto
     p.conditioning ? table.add(*p.conditioning) : table.add_empty(1);
     table.add(p.feasible ? 1.0 : 0.0);
     table.add(p.reason);
-    if (!why_no_joint_forces(mechanism)) {
+    if (!why_no_drive_forces(mechanism)) {
       add(p.forces);
       add(p.power);
       p.power ? table.add(std::accumulate(p.power->begin() + 1, p.power->end(), (*p.power)[0])) : table.add_empty(1);

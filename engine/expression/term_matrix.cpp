@@ -2,46 +2,32 @@
 
 #include <bit>
 #include <cmath>
-#include <map>
 
 namespace pkm::expression {
+
+Minors::Minors(const TermMatrix& A, std::size_t excluded_row) : A_(A) {
+  for (std::size_t i = 0; i < A.rows(); ++i)
+    if (i != excluded_row) rows_.push_back(i);
+  known_.emplace(0U, Term(A.graph(), 1.0));
+}
+
+Term Minors::of(unsigned columns) {
+  if (const auto found = known_.find(columns); found != known_.end()) return found->second;
+  const std::size_t row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];
+  Term sum(A_.graph(), 0.0);
+  // sign of the cofactor: positive for the last column of the submatrix, then alternating from right to left
+  bool is_negative = false;
+  for (std::size_t j = A_.columns(); j-- > 0;) {
+    if ((columns >> j & 1U) == 0) continue;
+    const Term product = A_(row, j) * of(columns & ~(1U << j));
+    sum = is_negative ? sum - product : sum + product;
+    is_negative = !is_negative;
+  }
+  known_.emplace(columns, sum);
+  return sum;
+}
+
 namespace {
-
-/// Determinants of square submatrices that consist of the first rows of a matrix and some of its columns, by Laplace
-/// expansion along their last rows.
-class Minors {
- public:
-  /// @param excluded_row  index of a row of A that the submatrices do not use; A.rows(): they use all rows
-  Minors(const TermMatrix& A, std::size_t excluded_row) : A_(A) {
-    for (std::size_t i = 0; i < A.rows(); ++i)
-      if (i != excluded_row) rows_.push_back(i);
-    known_.emplace(0U, Term(A.graph(), 1.0));
-  }
-
-  /// Determinant of the submatrix of the k columns in a set and the first k rows, not counting the constructor's
-  /// excluded_row.
-  /// @param columns  the set: bit j represents column j of A
-  Term of(unsigned columns) {
-    if (const auto found = known_.find(columns); found != known_.end()) return found->second;
-    const std::size_t row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];
-    Term sum(A_.graph(), 0.0);
-    // sign of the cofactor: positive for the last column of the submatrix, then alternating from right to left
-    bool is_negative = false;
-    for (std::size_t j = A_.columns(); j-- > 0;) {
-      if ((columns >> j & 1U) == 0) continue;
-      const Term product = A_(row, j) * of(columns & ~(1U << j));
-      sum = is_negative ? sum - product : sum + product;
-      is_negative = !is_negative;
-    }
-    known_.emplace(columns, sum);
-    return sum;
-  }
-
- private:
-  const TermMatrix& A_;
-  std::vector<std::size_t> rows_;
-  std::map<unsigned, Term> known_;
-};
 
 Term sum_of_squares(std::initializer_list<Term> terms) {
   Term sum = *terms.begin() * *terms.begin();

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <vector>
 
 #include "engine/expression/graph.hpp"
@@ -31,6 +32,22 @@ class TermMatrix {
  private:
   std::size_t rows_, columns_;
   std::vector<Term> elements_;
+};
+
+/// Determinants of square submatrices that consist of the first rows of a matrix and some of its columns, by Laplace
+/// expansion along their last rows.
+class Minors {
+ public:
+  /// @param A             at most 32 columns; it has to outlive this object
+  /// @param excluded_row  index of a row that is excluded from all submatrices; A.rows(): none is excluded
+  Minors(const TermMatrix& A, std::size_t excluded_row);
+  /// Determinant of a submatrix. @param columns  set of its columns, one bit each; it has as many rows as columns
+  Term of(unsigned columns);
+
+ private:
+  const TermMatrix& A_;
+  std::vector<std::size_t> rows_;
+  std::map<unsigned, Term> known_;
 };
 
 /// Sum of the squares of all elements.

@@ -90,6 +90,8 @@ Plans plans_of(const Evaluation& evaluation, std::size_t mode, const WorkspacePl
 
 std::string why_no_columns(const Evaluation& evaluation) {
   const MechanismInfo& info = evaluation.model.info;
+  if (!evaluation.model.tensions.empty())
+    return "the limits of the cables' tensions are no polynomials of low degree along a coordinate";
   const WorkspacePlan plan{.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(info)};
   const Plans plans = plans_of(evaluation, 0, plan, {}, 1);
   return plans.all.empty() ? plans.why_not : "";

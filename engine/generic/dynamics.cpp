@@ -142,6 +142,22 @@ template void find_dynamics(const Evaluation&, std::span<const double>, std::siz
 template void find_dynamics(const Evaluation&, std::span<const Dual4>, std::size_t, std::span<const MotionState<Dual4>>,
                             std::span<PoseDynamics<Dual4>>);
 
+DriveLimits drive_limits(const Evaluation& evaluation, std::span<const double> parameters) {
+  const Model& model = evaluation.model;
+  DriveLimits limits = no_drive_limits(model.inputs.joints);
+  limits.sharing = model.sharing;
+  const std::vector<double> values =
+      outputs_of(evaluation.drive_limits, evaluation.inputs(parameters, no_limits(model.info), 0));
+  auto next = values.begin();
+  for (std::size_t i = 0; i < model.force_scales.size(); ++i) limits.scale[i] = *next++;
+  for (std::size_t i = 0; i < model.tensions.size(); ++i)
+    if (model.tensions[i]) {
+      limits.upper[i] = -*next++;
+      limits.lower[i] = -*next++;
+    }
+  return limits;
+}
+
 template <class S>
 S total_mass(const Evaluation& evaluation, std::span<const S> parameters) {
   check_masses(evaluation, parameters);

@@ -22,4 +22,7 @@ void find_dynamics(const Evaluation& evaluation, std::span<const S> parameters, 
 template <class S>
 S total_mass(const Evaluation& evaluation, std::span<const S> parameters);
 
+/// Limits of the drive forces of a design, and how redundant drives share a load.
+DriveLimits drive_limits(const Evaluation& evaluation, std::span<const double> parameters);
+
 }  // namespace pkm::generic

@@ -82,6 +82,10 @@ Evaluation::Evaluation(Model source) : model(std::move(source)) {
     for (const MassCheck& check : model.masses) nodes.push_back(check.node);
     masses = Program(graph, nodes);
   }
+  nodes = model.force_scales;
+  for (const auto& tension : model.tensions)
+    if (tension) append(nodes, *tension);
+  drive_limits = Program(graph, nodes);
   if (model.size) size = program_of(graph, model.size->node);
   length = program_of(graph, model.length);
   radius = program_of(graph, model.radius);

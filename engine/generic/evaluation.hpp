@@ -24,6 +24,8 @@ struct Evaluation {
   // // Programs that depend on the design only. Where the file does not define a value, its program has no outputs.
   expression::Program requirements;  ///< outputs: both ends of each joint range, Model::required
   expression::Program tests, masses, size, length, radius;
+  /// Outputs: Model::force_scales, then both limits of the tension of every cable.
+  expression::Program drive_limits;
   expression::Program total_mass;            ///< output: total mass of all bodies [kg]
   std::vector<expression::Program> derived;  ///< threshold of each limit that the design determines, by limit
   /// Programs of the search box (lower and upper bound), the default value and the reach (lower and upper bound), by

@@ -22,6 +22,7 @@
 #include "engine/generic/voxels.hpp"
 #include "engine/mechanism/abilities/sided_columns.hpp"
 #include "engine/mechanism/ordered_margins.hpp"
+#include "engine/mechanism/redundant_drives.hpp"
 #include "engine/mechanism/scalar_dispatch.hpp"
 #include "engine/mechanism/total_mass.hpp"
 #include "engine/mechanism/with_drive_trains.hpp"
@@ -33,6 +34,7 @@ namespace {
 class GenericMechanism final : public Mechanism,
                                public TotalMass,
                                public OrderedMargins,
+                               public LimitedDrives,
                                public std::enable_shared_from_this<GenericMechanism>,
                                Voxels,
                                public Columns,
@@ -150,6 +152,15 @@ class GenericMechanism final : public Mechanism,
   }
   double total_mass(std::span<const double> parameters) const override { return generic::total_mass(e_, parameters); }
   Dual4 total_mass(std::span<const Dual4> parameters) const override { return generic::total_mass(e_, parameters); }
+  DriveLimits drive_limits(std::span<const double> parameters) const override {
+    return generic::drive_limits(e_, parameters);
+  }
+  std::vector<std::size_t> cables() const override {
+    std::vector<std::size_t> joints;
+    for (std::size_t i = 0; i < e_.model.tensions.size(); ++i)
+      if (e_.model.tensions[i]) joints.push_back(i);
+    return joints;
+  }
   const std::vector<std::string>& mass_models() const override { return e_.model.mass_models; }
   const std::string& mass_model() const override { return e_.model.mass_model; }
   std::shared_ptr<const Mechanism> with_masses(const std::string& model) const override {

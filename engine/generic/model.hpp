@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/dynamics/force_distribution.hpp"
 #include "engine/generic/limbs/limb.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
@@ -333,6 +334,12 @@ struct Model {
   std::optional<EquationNodes> equations;           ///< present if there are bodies
   std::vector<Node> jacobian;                       ///< EquationNodes::J, also computed for models without bodies
   std::optional<JointedBodies> jointed;             ///< present if the file describes all joints
+  /// Minimum and maximum tension [N] of the cable that drives a joint, by joint; std::nullopt: it is no cable.
+  std::vector<std::optional<std::array<Node, 2>>> tensions;
+  /// How redundant drives share a load, and the forces by which it divides theirs, by joint; empty: by the same for
+  /// all.
+  ForceSharing sharing = ForceSharing::least_norm;
+  std::vector<Node> force_scales;
   /// Peak force or torque of each drive [N, N m], by joint; empty if the file defines none.
   std::vector<std::optional<Node>> peak_forces;
   std::string why_no_reactions, why_no_elasticity;

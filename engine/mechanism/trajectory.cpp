@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/mechanism/inverse_dynamics.hpp"
+#include "engine/mechanism/redundant_drives.hpp"
 
 namespace pkm {
 namespace {
@@ -60,10 +61,11 @@ void set_rates(TrajectoryPoint& point, const AxisVector<double>& speeds, const A
   if (is_finite(accelerations)) point.accelerations = accelerations;
 }
 
-void mark_singular(TrajectoryPoint& point) {
-  point.reason += std::string(point.feasible ? "" : "; ") + "the Jacobian is singular to working precision";
+void mark_infeasible(TrajectoryPoint& point, const std::string& reason) {
+  point.reason += (point.feasible ? "" : "; ") + reason;
   point.feasible = false;
 }
+void mark_singular(TrajectoryPoint& point) { mark_infeasible(point, "the Jacobian is singular to working precision"); }
 
 }  // namespace
 
@@ -71,7 +73,8 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
                               const LimitSpec& limits, const Motion& motion, std::size_t count,
                               const Wrench<double>& wrench) {
   const MechanismInfo& info = mechanism.info();
-  const Dynamics* const dynamics = why_no_joint_forces(mechanism) ? nullptr : mechanism.dynamics();
+  const Dynamics* const dynamics = why_no_drive_forces(mechanism) ? nullptr : mechanism.dynamics();
+  const DriveLimits force_limits = drive_limits(mechanism, parameters);
   const DriveTrains* const trains = mechanism.drive_trains();
   const Velocities* const velocities = mechanism.velocities();
   InverseDynamicsScratch<double> scratch;
@@ -96,20 +99,27 @@ Trajectory compute_trajectory(const Mechanism& mechanism, std::span<const double
     point.conditioning = report.conditioning;
     point.joints = report.joints;
     if (dynamics && report.assembles) {
-      const auto visit = [&](std::size_t, const ActuatorState<double>& drive) {
+      const auto visit = [&](std::size_t, const MotionState<double>& state, const PoseDynamics<double>& d) {
+        ActuatorState<double> drive{d.q, d.J * state.velocity, d.J * at.acceleration + d.J_rate_X, {}};
         set_rates(point, drive.speeds, drive.accelerations);
-        if (!is_finite(drive.forces)) return mark_singular(point);
+        const auto [forces, reason] = distributed_forces(d, at.acceleration, wrench, force_limits);
+        if (!forces) {
+          mark_infeasible(point, reason);
+          return true;
+        }
+        drive.forces = *forces;
         point.forces = drive.forces;
         point.power = AxisVector<double>(drive.forces.size());
         for (std::size_t i = 0; i < drive.forces.size(); ++i) (*point.power)[i] = drive.power(i);
-        if (!trains) return;
+        if (!trains) return true;
         point.torques = point.motor_speeds = AxisVector<double>(drive.forces.size());
         for (std::size_t i = 0; i < drive.forces.size(); ++i) {
           (*point.torques)[i] = drive.torque((*trains)[i], i);
           (*point.motor_speeds)[i] = drive.speeds[i] * (*trains)[i].ratio;
         }
+        return true;
       };
-      inverse_dynamics_along<double>(*dynamics, parameters, mode, {&at, 1}, wrench, scratch, visit);
+      equations_along<double>(*dynamics, parameters, mode, std::span(&at, 1), scratch, visit);
     } else if (velocities && report.assembles) {
       const auto joints = velocities->influence(parameters, at.pose, mode);
       if (joints) set_rates(point, joints->G * at.velocity, accelerations(*joints, at.velocity, at.acceleration));

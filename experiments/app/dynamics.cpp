@@ -3,6 +3,7 @@
 
 #include "engine/config/assignments.hpp"
 #include "engine/dynamics/coupling.hpp"
+#include "engine/mechanism/redundant_drives.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/joint_forces.hpp"
 #include "experiments/app/target.hpp"
@@ -20,10 +21,27 @@ std::string inertia_units(const Axes& joints) {
   return units == "m" ? "kg" : units == "rad" ? "kg m^2" : "kg, kg m, kg m^2";
 }
 
-/// Adds the joint-space dynamics to the output: positions, speeds, drive forces, powers and coupling indices.
-/// @return the reason why there are no drive forces if J is singular; otherwise ""
-std::string report_drive_forces(const MechanismInfo& info, const PoseDynamics<double>& d, const MotionSample& at,
+/// Adds the tensions of the cables to the output.
+void report_tensions(const Target& target, const AxisVector<double>& tau, Printout& out) {
+  const LimitedDrives* const drives = find_limited_drives(*target.mechanism);
+  if (!drives || drives->cables().empty()) return;
+  const DriveLimits limits = drives->drive_limits(target.parameters);
+  std::vector<Row> rows = {{"", "tension", "minimum", "maximum"}};
+  Json& json = out.json["tensions"] = Json::object();
+  for (const std::size_t i : drives->cables()) {
+    const std::string& name = target.info().joints[i].name;
+    json[name] = -tau[i];
+    rows.push_back({name, number(-tau[i], "N"), number(-limits.upper[i], "N"), number(-limits.lower[i], "N")});
+  }
+  out.add_table("tensions of the cables", rows);
+}
+
+/// Adds the joint-space dynamics to the output: positions, speeds, drive forces, powers and coupling indices. If there
+/// are more drives than coordinates, M_q is undefined: M_X and the internal forces are added instead.
+/// @return the reason why there are no drive forces; otherwise ""
+std::string report_drive_forces(const Target& target, const PoseDynamics<double>& d, const MotionSample& at,
                                 const Wrench<double>& wrench, Printout& out) {
+  const MechanismInfo& info = target.info();
   const AxisVector<double> q_rate = d.J * at.velocity;
   out.json["joints"] = axes_json(info.joints, d.q);
   out.json["J"] = matrix_json(d.J);
@@ -39,22 +57,40 @@ std::string report_drive_forces(const MechanismInfo& info, const PoseDynamics<do
   const auto force = [drives = assignable_forces(info)](std::size_t i) { return drives[i].unit; };
   add("joint_speeds", "speed", q_rate, [&info](std::size_t i) { return info.joints[i].unit + "/s"; });
   const std::string jacobian = matrix_text("J, where qdot = J Xdot", d.J);
-  if (is_singular(d.J)) {
+  const bool redundant = d.J.rows() > d.J.cols();
+  const std::string inertia =
+      redundant ? matrix_text("inertia M_X at the platform (" + inertia_units(info.coordinates) + ")", d.M_X) : "";
+  if (redundant) out.json["MX"] = matrix_json(d.M_X);
+  const auto [forces, reason] =
+      distributed_forces(d, at.acceleration, wrench, drive_limits(*target.mechanism, target.parameters));
+  if (!forces) {
     out.add_table("joints", rows);
-    out.text += jacobian;
-    return "the Jacobian of the pose is singular to working precision, so the drives have no forces";
+    out.text += inertia + jacobian;
+    return is_rank_deficient(d.J) ? "the Jacobian of the pose is singular to working precision, so the drives have no "
+                                    "forces"
+                                  : reason;
   }
-  const JointSpace<double> at_joints = joint_space(d);
-  const AxisVector<double> tau = drive_forces(d, at.acceleration, wrench);
+  const AxisVector<double>& tau = *forces;
   AxisVector<double> power = tau;
   for (std::size_t i = 0; i < power.size(); ++i) power[i] *= q_rate[i];
-  out.json["Mq"] = matrix_json(at_joints.M_q);
   add("tau", "force tau", tau, force);
+  if (redundant) {
+    add("power", "power", power, [](std::size_t) { return "W"; });
+    out.add_table("joints", rows);
+    report_tensions(target, tau, out);
+    const AxisMatrix<double> internal = internal_forces(d.J);
+    out.json["internal_forces"] = matrix_json(internal);
+    out.text += matrix_text("internal forces, an orthonormal basis (rows: joints)", internal) + inertia + jacobian;
+    return "";
+  }
+  const JointSpace<double> at_joints = joint_space(d);
+  out.json["Mq"] = matrix_json(at_joints.M_q);
   add("coriolis", "Coriolis", at_joints.c_q, force);
   add("gravity", "gravity", at_joints.G_q, force);
   add("power", "power", power, [](std::size_t) { return "W"; });
   add("dci", "coupling index", coupling_indices(at_joints.M_q), [](std::size_t) { return "1"; });
   out.add_table("joints", rows);
+  report_tensions(target, tau, out);
   out.text += matrix_text("joint-space inertia M_q (" + inertia_units(info.joints) + ")", at_joints.M_q) + jacobian;
   return "";
 }
@@ -63,7 +99,7 @@ std::string dynamics(const Target& target, const DynamicsArguments& arguments, P
   const MechanismInfo& info = target.info();
   const Mechanism& mechanism = *target.mechanism;
   const Dynamics* const equations = mechanism.dynamics();
-  if (const Unsupported reason = why_no_joint_forces(mechanism))
+  if (const Unsupported reason = why_no_drive_forces(mechanism))
     throw ConfigError({"", 0, "dynamics"}, *reason + ", so its dynamics are undefined");
   expect_reactions(mechanism, arguments);
   const std::string mode = parse_mode(info, arguments);
@@ -81,7 +117,7 @@ std::string dynamics(const Target& target, const DynamicsArguments& arguments, P
     const MotionState<double> state{at.pose, at.velocity};
     PoseDynamics<double> d;
     equations->equations(std::span<const double>(target.parameters), mode, {&state, 1}, {&d, 1});
-    no_forces = report_drive_forces(info, d, at, wrench, out);
+    no_forces = report_drive_forces(target, d, at, wrench, out);
     if (arguments.any()) {
       Reactions found = mechanism.reactions()->find(target.parameters, mode, state, at.acceleration, wrench);
       select_joints(arguments, found);

@@ -43,11 +43,14 @@ void add_reaction_options(CLI::App& command, ReactionArguments& arguments) {
 }
 
 void expect_reactions(const Mechanism& mechanism, const ReactionArguments& arguments) {
-  if (!arguments.any() || mechanism.reactions()) return;
+  if (!arguments.any()) return;
+  const char* const option = arguments.reactions ? "--reactions" : "--joint";
+  if (const Unsupported reason = why_no_joint_forces(mechanism); reason && mechanism.dynamics())
+    throw ConfigError({"", 0, option}, *reason + ", so forces in its joints cannot be computed");
+  if (mechanism.reactions()) return;
   const std::string why = mechanism.why_no_reactions();
-  throw ConfigError({"", 0, arguments.reactions ? "--reactions" : "--joint"},
-                    "mechanism " + mechanism.info().name + " has no model of the forces in its joints" +
-                        (why.empty() ? "" : ": " + why));
+  throw ConfigError({"", 0, option}, "mechanism " + mechanism.info().name +
+                                         " has no model of the forces in its joints" + (why.empty() ? "" : ": " + why));
 }
 
 void select_joints(const ReactionArguments& arguments, Reactions& reactions) {

@@ -1,6 +1,7 @@
 #include "experiments/app/motion_samples.hpp"
 
 #include "engine/core/unit.hpp"
+#include "engine/mechanism/redundant_drives.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/joint_forces.hpp"
 
@@ -23,7 +24,7 @@ Json sample_json(const Mechanism& mechanism, const TrajectoryPoint& p) {
                {"conditioning", json_or_null(p.conditioning)},
                {"feasible", p.feasible},
                {"reason", text_or_null(p.reason)}};
-  if (!why_no_joint_forces(mechanism)) {
+  if (!why_no_drive_forces(mechanism)) {
     json["forces"] = axes_json(info.joints, p.forces);
     json["power"] = axes_json(info.joints, p.power);
   }

@@ -68,8 +68,6 @@ Json state_json(const MechanismInfo& info, const SimulationState& s) {
 std::string simulate_target(const Target& target, const SimulateArguments& arguments, Printout& out) {
   const MechanismInfo& info = target.info();
   const Dynamics& dynamics = require_capability(target.mechanism->dynamics(), "simulate", "dynamics", info);
-  if (const Unsupported reason = why_no_joint_forces(*target.mechanism))
-    throw ConfigError({"", 0, "simulate"}, *reason + ", so it cannot be simulated");
   const std::string mode = parse_mode(info, arguments);
   const MotionSample at = parse_motion(*target.mechanism, arguments);
   const auto setup = simulation_setup(target, dynamics, mode, arguments);

@@ -12,17 +12,23 @@
 namespace pkm {
 namespace {
 
-/// The pose with these joint coordinates, by Newton's method; std::nullopt if it does not converge.
+/// Maps the errors of more joints than coordinates to those of the coordinates, by least squares: (J^T J)^-1 J^T.
+AxisMatrix<double> pseudo_inverse(const AxisMatrix<double>& J) { return solve(transpose(J) * J, transpose(J)); }
+
+/// The pose with these joint coordinates, by Newton's method, or the one that fits them best, by the Gauss-Newton
+/// method; std::nullopt if it does not converge.
 std::optional<Pose<double>> pose_of_joints(const Target& target, const std::string& mode, Pose<double> pose,
                                            const AxisVector<double>& joints) {
   constexpr int kMaxSteps = 50;
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < kMaxSteps; ++step) {
     const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
-    if (!report.assembles || !report.J || is_singular(*report.J)) return {};
+    if (!report.assembles || !report.J || is_rank_deficient(*report.J)) return {};
     AxisVector<double> rest = joints;
     for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= (*report.joints)[i];
-    const AxisVector<double> change = solve(*report.J, rest);
+    const AxisVector<double> change = report.J->rows() == report.J->cols()
+                                          ? solve(*report.J, rest)
+                                          : AxisVector<double>(pseudo_inverse(*report.J) * rest);
     double size = 0;
     for (std::size_t i = 0; i < pose.size(); ++i) {
       pose[i] += change[i];
@@ -68,18 +74,19 @@ void report_tool_error(const Target& target, const std::string& mode, const Moti
   const MechanismInfo& info = target.info();
   const Velocities& velocities =
       require_capability(target.mechanism->velocities(), "--joint-error", "influence coefficients", info);
-  if (info.joints.size() != info.coordinates.size())
+  if (info.joints.size() < info.coordinates.size())
     throw ConfigError({"", 0, "--joint-error"},
-                      "mechanism " + info.name + " does not have as many joints as coordinates");
+                      "mechanism " + info.name + " has fewer joints than coordinates, which do not determine its pose");
   const std::vector<double> errors = parse_joint_errors(info, lists);
   out.json["joint_error"] = values_by_name(info.joints, errors);
   out.json["tool_error"] = nullptr;
   const auto influence = velocities.influence(target.parameters, at.pose, mode);
-  if (!influence || is_singular(influence->G)) {
+  if (!influence || is_rank_deficient(influence->G)) {
     out.text += "\ntool error: undefined, because the pose is singular\n";
     return;
   }
-  const AxisMatrix<double> inverse = reversed(*influence).G;  // maps joint errors to coordinate errors
+  const bool redundant = info.joints.size() > info.coordinates.size();
+  const AxisMatrix<double> inverse = redundant ? pseudo_inverse(influence->G) : reversed(*influence).G;
   const auto with_micrometres = [](double error) {
     return number(error, "m") + " (" + formatted("%.6g", 1e6 * error) + " um)";
   };

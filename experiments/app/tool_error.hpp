@@ -1,4 +1,5 @@
-// Pose error of the tool caused by joint errors: to first order, x = J^-1 q, and exactly at the worst corner.
+// Pose error of the tool caused by joint errors: to first order, x = J^-1 q (of redundant drives by least squares), and
+// exactly at the worst corner.
 #pragma once
 
 #include <string>
@@ -9,8 +10,9 @@
 namespace pkm {
 
 /// Reports the largest first-order pose errors of the platform for joint errors within the bounds +-q_i: of each
-/// coordinate, of the position of the platform's origin and of the orientation. Throws ConfigError if the mechanism has
-/// no influence coefficients, or not as many joints as coordinates.
+/// coordinate, of the position of the platform's origin and of the orientation. If there are more joints than
+/// coordinates, the pose is the one that fits all joint values best. Throws ConfigError if the mechanism has no
+/// influence coefficients, or fewer joints than coordinates.
 /// @param T      maps coordinate rates to the platform's twist (PoseReport::T); std::nullopt: unspecified
 /// @param lists  values of --joint-error: one bound for all joints, or bounds by name
 /// @param exact  also computes the poses at all corners of the box of joint errors, by Newton's method from the

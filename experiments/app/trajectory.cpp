@@ -7,6 +7,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/export/tables.hpp"
 #include "engine/math/rounding.hpp"
+#include "engine/mechanism/redundant_drives.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/fastest.hpp"
@@ -40,7 +41,7 @@ std::string missing_peaks(const Mechanism& mechanism, const Trajectory& trajecto
   if (!mechanism.dynamics())
     return name + "dynamics: forces and power are not computed\n" +
            (mechanism.velocities() ? "" : name.substr(1) + "influence coefficients: speeds are not computed\n");
-  if (const Unsupported reason = why_no_joint_forces(mechanism))
+  if (const Unsupported reason = why_no_drive_forces(mechanism))
     return '\n' + *reason + ": forces and power are not computed\n";
   if (trajectory.summary.has_forces) return "";
   const auto first = std::ranges::find_if(trajectory.points, [](const auto& p) { return !p.forces; });
@@ -69,7 +70,7 @@ void report_summary(const Mechanism& mechanism, const Trajectory& trajectory, Pr
   const std::string force = forces == "N m" ? "torque [N m]" : "force [" + forces + "]";
   const std::string per = trajectory.periodic ? "per cycle" : "over the motion";
   add("peak_speed", "peak speed [" + units_of(info.joints, "/s") + "]", s.peak_speed);
-  if (const Unsupported reason = why_no_joint_forces(mechanism)) {
+  if (const Unsupported reason = why_no_drive_forces(mechanism)) {
     json["no_forces"] = *reason;
   } else {
     add("peak_force", "peak " + force, if_known(s.peak_force));
@@ -100,17 +101,14 @@ std::string trajectory(const Target& given, const TrajectoryArguments& arguments
   expect_fastest(arguments);
   const std::string mode = parse_mode(target.info(), arguments);
   const Wrench<double> wrench = parse_wrench(arguments.wrench);
-  const Unsupported no_forces = why_no_joint_forces(*target.mechanism);
+  const Unsupported no_forces = why_no_drive_forces(*target.mechanism);
   if (!arguments.wrench.empty() && no_forces)
     throw ConfigError({"", 0, "--wrench"}, *no_forces + ", so a wrench has no effect");
   if (!arguments.motors.empty() && !target.mechanism->drive_trains())
     throw ConfigError({"", 0, "--motors"}, "no drive trains", "a study with [[drive_train]]");
-  if (no_forces && !arguments.motors.empty())
-    throw ConfigError({"", 0, "--motors"}, *no_forces + ", so motor torques cannot be computed");
+  if (const Unsupported no_inertia = why_no_joint_forces(*target.mechanism); no_inertia && !arguments.motors.empty())
+    throw ConfigError({"", 0, "--motors"}, *no_inertia + ", so motor torques cannot be computed");
   expect_reactions(*target.mechanism, arguments);
-  if (arguments.any() && no_forces)
-    throw ConfigError({"", 0, arguments.reactions ? "--reactions" : "--joint"},
-                      *no_forces + ", so forces in its joints cannot be computed");
   auto motion = with_given_inputs(*target.mechanism, find_motion(target, arguments.motion), arguments);
   std::vector<Motor> motors;
   if (!arguments.motors.empty()) motors = load_motors_toml(arguments.motors);

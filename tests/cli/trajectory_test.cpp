@@ -27,18 +27,13 @@ std::vector<std::string> lines_of_file(const std::string& path) {
   return lines;
 }
 
-TEST(CliTrajectory, RedundantDrivesHaveSpeedsWithoutForces) {
-  const std::string data = PKM_TEST_DATA "/redundant/", rrr = data + "4-rrr.toml";
-  const auto found = pkmopt({"trajectory", rrr, "--motion", data + "4-rrr-motion.toml"});
+TEST(CliTrajectory, RedundantDrivesHaveForcesOfLeastNorm) {
+  const std::string data = PKM_TEST_DATA "/redundant/", rrr = data + "4-rrr.toml", motion = data + "4-rrr-motion.toml";
+  const auto found = pkmopt({"trajectory", rrr, "--motion", motion, "--wrench", "Fx=1"});
   EXPECT_EQ(found.exit_code, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr("peak speed [rad/s]"));
-  EXPECT_THAT(
-      found.out,
-      HasSubstr(
-          "mechanism 4-rrr has 4 joints for 3 coordinates, not as many of both: forces and power are not computed"));
-  const json all = pkmopt({"trajectory", rrr, "--motion", data + "4-rrr-motion.toml", "--json"}).json();
-  EXPECT_EQ(all["summary"]["no_forces"], "mechanism 4-rrr has 4 joints for 3 coordinates, not as many of both");
-  EXPECT_FALSE(all["summary"].contains("peak_force"));
+  EXPECT_THAT(found.out, HasSubstr("peak torque [N m]"));
+  const json all = pkmopt({"trajectory", rrr, "--motion", motion, "--json"}).json();
   const json& samples = all["samples"];
   for (std::size_t k = 1; k + 1 < samples.size(); ++k)  // compare the speeds with differences of the joint positions
     for (const auto& [name, speed] : samples[k]["speeds"].items()) {
@@ -46,14 +41,72 @@ TEST(CliTrajectory, RedundantDrivesHaveSpeedsWithoutForces) {
       const double difference = double(samples[k + 1]["joints"][name]) - double(samples[k - 1]["joints"][name]);
       EXPECT_NEAR(speed, difference / step, 2e-4);
     }
-  for (const std::vector<std::string>& option :
-       {std::vector<std::string>{"--wrench", "Fx=1"}, {"--reactions"}, {"--joint", "arm1.A"}}) {
-    std::vector<std::string> command = {"trajectory", rrr, "--motion", data + "4-rrr-motion.toml"};
+  // virtual work, J^T tau = M_X Xddot, and no component along the internal forces
+  const json pose =
+      pkmopt({"dynamics", rrr, "--at", "x=0.03,y=0.02,phi=0.1", "--acceleration", "x=5,y=-2,phi=10", "--json"}).json();
+  const std::vector<double> acceleration = {5, -2, 10};
+  const std::vector<std::string> joints = {"arm1", "arm2", "arm3", "arm4"};
+  for (std::size_t j = 0; j < 3; ++j) {
+    double work = 0, inertia = 0;
+    for (std::size_t i = 0; i < 4; ++i) work += double(pose["J"][i][j]) * double(pose["tau"][i]);
+    for (std::size_t i = 0; i < 3; ++i) inertia += double(pose["MX"][j][i]) * acceleration[i];
+    EXPECT_NEAR(work, inertia, 1e-12 * std::fabs(inertia));
+  }
+  double internal = 0, norm = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    internal += double(pose["internal_forces"][i][0]) * double(pose["tau"][i]);
+    norm += double(pose["tau"][i]) * double(pose["tau"][i]);
+  }
+  EXPECT_GT(norm, 0);
+  EXPECT_NEAR(internal, 0, 1e-12);
+  EXPECT_TRUE(pose["Mq"].is_null());
+  EXPECT_TRUE(pose["dci"].is_null());
+  for (const std::vector<std::string>& option : {std::vector<std::string>{"--reactions"}, {"--joint", "arm1.A"}}) {
+    std::vector<std::string> command = {"trajectory", rrr, "--motion", motion};
     command.insert(command.end(), option.begin(), option.end());
     const auto refused = pkmopt(command);
     EXPECT_EQ(refused.exit_code, 2) << option[0];
     EXPECT_THAT(refused.err, HasSubstr(option[0])) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr("4 joints for 3 coordinates")) << refused.err;
   }
+}
+
+TEST(CliTrajectory, CablesHaveTensionsWithinTheirLimits) {
+  const StudyFolder folder;
+  const std::string ipanema = PKM_EXPERIMENTS "/mechanisms/cables/ipanema.toml";
+  folder.write("slow.toml",
+               "type = \"points\"\ntime = 2\npoints = [{ x = -0.3, y = 0, z = 1, alpha = 0, beta = 0, gamma = 0 }, "
+               "{ x = 0.3 }]\n");
+  const auto found =
+      pkmopt({"trajectory", ipanema, "--motion", "slow.toml", "--samples", "41", "--json"}, folder.path());
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  for (const json& sample : found.json()["samples"])
+    for (const auto& [name, force] : sample["forces"].items()) {
+      EXPECT_LE(double(force), 0) << name;
+      EXPECT_GE(double(force), -720) << name;
+    }
+  // in 0.05 s the inertia forces are too large
+  folder.write("fast.toml",
+               "type = \"points\"\ntime = 0.05\npoints = [{ x = -0.3, y = 0, z = 1, alpha = 0, beta = 0, gamma = 0 }, "
+               "{ x = 0.3 }]\n");
+  const auto fast = pkmopt({"trajectory", ipanema, "--motion", "fast.toml", "--samples", "41"}, folder.path());
+  EXPECT_EQ(fast.exit_code, 1);
+  EXPECT_THAT(fast.err, HasSubstr("no tensions within their limits balance the load"));
+  const auto pose = pkmopt({"dynamics", ipanema, "--at", "x=0,y=0,z=1,alpha=0,beta=0,gamma=0"});
+  EXPECT_EQ(pose.exit_code, 0) << pose.err;
+  EXPECT_THAT(pose.out, HasSubstr("tensions of the cables"));
+  EXPECT_THAT(pose.out, HasSubstr("internal forces"));
+}
+
+TEST(CliTrajectory, RedundantDrivesFitJointErrorsByLeastSquares) {
+  const std::string rrr = PKM_TEST_DATA "/redundant/4-rrr.toml";
+  const json pose =
+      pkmopt({"pose", rrr, "--at", "x=0.03,y=0.02,phi=0.1", "--joint-error", "0.0001", "--exact-error", "--json"})
+          .json();
+  const json& error = pose["tool_error"];
+  EXPECT_GT(double(error["translation"]), 0);
+  EXPECT_NEAR(double(error["worst_corner"]["translation"]), double(error["translation"]),
+              1e-2 * double(error["translation"]));
 }
 
 TEST(CliTrajectory, RedundantDrivesFollowNoMotionThroughSingularPoses) {

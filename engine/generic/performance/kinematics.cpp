@@ -80,7 +80,13 @@ FirstOrderKinematics first_order_kinematics(Model& model) {
     rotation = TermMatrix(model.graph, rotations.size(), n);
     for (std::size_t i = 0; i < rotations.size(); ++i) rotation(i, rotations[i]) = Term(model.graph, 1.0);
   }
-  return {J, without_zero_rows(translation), rotation, J.rows() == n ? std::optional(inverse_of(J)) : std::nullopt};
+  std::optional<expression::Inverse> inverse;
+  if (J.rows() == n) inverse = inverse_of(J);
+  if (J.rows() > n) {
+    const auto [adjugate, determinant] = inverse_of(J.transposed() * J);
+    inverse = {adjugate * J.transposed(), determinant};
+  }
+  return {J, without_zero_rows(translation), rotation, inverse};
 }
 
 std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderKinematics& kinematics) {

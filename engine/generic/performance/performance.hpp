@@ -34,7 +34,8 @@ struct FirstOrderKinematics {
   /// T_w (rates of the coordinates to angular velocity); if there are one or two rotations, whose axes are orthonormal,
   /// only the components along these axes.
   TermMatrix rotation;
-  /// Inverse of J; std::nullopt unless there are as many joints as coordinates.
+  /// Inverse of J or, if there are more joints than coordinates, its pseudo-inverse (J^T J)^-1 J^T by least squares;
+  /// std::nullopt if there are fewer joints.
   std::optional<expression::Inverse> inverse;
 };
 FirstOrderKinematics first_order_kinematics(Model& model);

@@ -1,0 +1,204 @@
+// Reads the tensions of cables and [forces], and adds the margin and the quantities of the cables.
+#include "engine/config/mechanism_draft.hpp"
+#include "engine/config/mechanism_limb.hpp"
+#include "engine/core/catalogue.hpp"
+#include "engine/expression/derivative.hpp"
+#include "engine/generic/performance/tension_limits.hpp"
+
+namespace pkm {
+namespace {
+
+using expression::TermMatrix;
+using generic::LoadSet;
+using limbs::Term, limbs::Vector3;
+
+/// Reads the loads that cables have to balance.
+class Loads {
+ public:
+  Loads(const std::optional<ConfigValue>& table, MechanismDraft& draft)
+      : table_(table), draft_(draft), model_(draft.model), n_(model_.inputs.coordinates) {}
+
+  /// The sets of loads: one, or one for each end of the range of the payload.
+  std::vector<LoadSet> sets() {
+    LoadSet common{std::vector<Term>(n_, draft_.zero()), {}};
+    if (model_.equations)
+      for (std::size_t i = 0; i < n_; ++i) common.centre[i] = model_.term(model_.equations->G_X[i]);
+    add_wrench(common);
+    std::vector<LoadSet> sets;
+    for (const Term& mass : payloads()) {
+      LoadSet with_payload = common;
+      for (std::size_t i = 0; i < n_; ++i)
+        with_payload.centre[i] = with_payload.centre[i] + mass * kGravity * payload_rates_[i][2];
+      add_inertia(mass, with_payload);
+      sets.push_back(std::move(with_payload));
+    }
+    return sets;
+  }
+
+ private:
+  std::optional<ConfigValue> find(const char* key) const { return table_ ? table_->find(key) : std::nullopt; }
+
+  /// Velocities of a point of the platform for unit rates of the coordinates.
+  std::vector<Vector3> rates_of(const Vector3& point) {
+    std::vector<Vector3> rates;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const auto rate = [&](std::size_t axis) {
+        return model_.term(expression::derivative(
+            model_.graph, point[axis].node(),
+            model_.graph.input(model_.inputs.coordinate(i), generic::Inputs::coordinate_group(i))));
+      };
+      rates.emplace_back(rate(0), rate(1), rate(2));
+    }
+    return rates;
+  }
+  Vector3 terms(const std::array<expression::Node, 3>& v) {
+    return {model_.term(v[0]), model_.term(v[1]), model_.term(v[2])};
+  }
+
+  /// Adds the external forces and moments to a set. @param key  "force" or "moment"
+  void add_components(const char* key, const char* unit, const std::vector<Vector3>& rates, LoadSet& set) {
+    const auto given = find(key);
+    if (!given) return;
+    const auto components = given->elements("three magnitudes along x, y, z");
+    if (components.size() != 3) throw given->error("three magnitudes along x, y, z");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Term magnitude = draft_.scope.positive(components[axis], unit, key, true);
+      std::vector<Term> load;
+      for (const Vector3& rate : rates) load.push_back(magnitude * rate[axis]);
+      if (!magnitude.is(0)) set.half_axes.push_back(load);
+    }
+  }
+  void add_wrench(LoadSet& set) {
+    add_components("force", "N", rates_of(terms(model_.wrench_point.value_or(model_.origin))), set);
+    std::vector<Vector3> rotations;
+    for (const auto& direction : model_.rotation_directions) rotations.push_back(terms(direction));
+    add_components("moment", "N m", rotations, set);
+  }
+
+  /// The masses at the ends of the payload's range; 0 if there is no payload.
+  std::vector<Term> payloads() {
+    const auto at = find("payload_at");
+    const auto range = find("payload");
+    if (at && !range) throw at->refusal("`payload_at` requires `payload`");
+    payload_rates_ =
+        rates_of(at ? draft_.origin + draft_.turn * draft_.scope.point_of_design(*at, "payload_at") : draft_.origin);
+    if (!range) return {draft_.zero()};
+    const auto [from, to] = read_range(*range, "kg", "payload", draft_);
+    model_.required.push_back({"payload", "kg", from.node()});
+    return {from, to};
+  }
+
+  /// Adds the inertia forces of platform, limbs and payload at rest.
+  void add_inertia(const Term& payload, LoadSet& set) {
+    const auto given = table_ ? table_->find_table("acceleration") : std::nullopt;
+    if (!given) return;
+    if (!model_.equations && !find("payload"))
+      throw given->refusal("accelerations have no inertia forces: neither the mechanism nor a `payload` has a mass");
+    given->allow(names_of(model_.info.coordinates), "coordinate");
+    for (std::size_t j = 0; j < n_; ++j) {
+      const AxisInfo& coordinate = model_.info.coordinates[j];
+      const auto magnitude = given->find(coordinate.name);
+      if (!magnitude) continue;
+      const Term a = draft_.scope.positive(*magnitude, coordinate.unit + "/s^2", "acceleration", true);
+      std::vector<Term> load;
+      for (std::size_t i = 0; i < n_; ++i) {
+        Term inertia = payload * limbs::Term(dot(payload_rates_[i], payload_rates_[j]));
+        if (model_.equations) inertia = inertia + model_.term(model_.equations->M_X[i * n_ + j]);
+        load.push_back(inertia * a);
+      }
+      set.half_axes.push_back(load);
+    }
+  }
+
+  const std::optional<ConfigValue>& table_;
+  MechanismDraft& draft_;
+  generic::Model& model_;
+  std::size_t n_;
+  std::vector<Vector3> payload_rates_;
+};
+
+/// Reads how redundant drives share a load.
+void read_sharing(const ConfigValue& table, bool has_cables, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  for (const char* const key : {"distribution", "relative_to"})
+    if (const auto given = table.find(key); given && model.info.joints.size() <= model.inputs.coordinates)
+      throw given->refusal("the drives are not redundant: there are " + std::to_string(model.info.joints.size()) +
+                           " joints for " + std::to_string(model.inputs.coordinates) + " coordinates");
+  if (const auto given = table.find("distribution")) {
+    const std::string& word = given->word();
+    if (word == "centre" && !has_cables)
+      throw given->refusal("a centre requires cables, i.e. limbs with `tension`, whose forces have limits");
+    model.sharing = word == "centre"          ? ForceSharing::centre
+                    : word == "least-maximum" ? ForceSharing::least_maximum
+                                              : ForceSharing::least_norm;
+  }
+  if (const auto given = table.find("relative_to")) {
+    if (model.sharing == ForceSharing::centre)
+      throw given->refusal("the centre of the allowed tensions does not depend on `relative_to`");
+    constexpr const char* kExpected = "one force or torque for each joint";
+    const auto scales = given->elements(kExpected);
+    if (scales.size() != model.info.joints.size()) throw given->error(kExpected);
+    for (std::size_t i = 0; i < scales.size(); ++i)
+      model.force_scales.push_back(
+          draft.scope.positive(scales[i], model.info.joints[i].turns() ? "N m" : "N", "relative_to").node());
+  }
+}
+
+}  // namespace
+
+void read_tension(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft) {
+  const auto tension = table.find("tension");
+  if (!tension) return;
+  limb.tension = read_range(*tension, "N", limb.group, draft);
+  const auto& [from, to] = *limb.tension;
+  draft.model.required.push_back({limb.name + ": minimum tension", "N", from.node()});
+  draft.model.required.push_back({limb.name + ": maximum - minimum tension", "N", (to - from).node()});
+}
+
+void add_forces(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  const std::size_t joints = model.info.joints.size(), coordinates = model.inputs.coordinates;
+  std::vector<std::optional<std::array<Term, 2>>> tensions(joints);
+  std::size_t cables = 0;
+  for (const NamedLimb& limb : draft.limbs)
+    if (limb.tension) {
+      tensions[limb.joint] = limb.tension;
+      ++cables;
+    }
+  const auto table = root.find_table("forces");
+  if (table) {
+    if (cables == 0)
+      for (const char* const key : {"cables", "payload", "payload_at", "force", "moment", "acceleration"})
+        if (const auto given = table->find(key))
+          throw given->refusal(std::string("`") + key + "` requires cables, i.e. limbs with `tension`");
+    read_sharing(*table, cables > 0, draft);
+  }
+  if (cables == 0) return;
+  const std::string counts = std::to_string(joints) + " joints for " + std::to_string(coordinates) + " coordinates";
+  if (joints < coordinates)
+    throw root.refusal("limits of the tension need at least as many joints as coordinates, but there are " + counts);
+  if (joints - cables >= coordinates)
+    throw root.refusal("limits of the tension have no effect: the drives that are no cables balance every load alone");
+  for (const auto& tension : tensions)
+    model.tensions.push_back(tension ? std::optional(std::array{(*tension)[0].node(), (*tension)[1].node()})
+                                     : std::nullopt);
+  const auto kinematics = generic::first_order_kinematics(model);
+  const generic::TensionBalance balance =
+      generic::tension_balance(kinematics.J, kinematics.translation, tensions, Loads(table, draft).sets());
+  const auto add = [&](const char* name, const char* unit, const Term& value, const char* meaning) {
+    add_predefined_quantity(root, study, {name, unit, meaning, value}, draft);
+  };
+  add("tension_factor", "1", balance.factor,
+      "largest ratio of minimum to maximum tension with which the cables balance each other; < 0: they cannot");
+  add("tension_reserve", "N", balance.reserve,
+      "by how much all limits of the tensions can be tightened while the cables balance all loads");
+  if (balance.capacity)
+    add("wrench_capacity", "N", *balance.capacity,
+        "largest force in every direction at the platform that the cables balance in addition to all loads");
+  const bool closure = table && table->word_at("cables") == "wrench-closure";
+  model.margins.push_back(closure ? generic::Result{"wrench-closure", "1", balance.factor.node()}
+                                  : generic::Result{"wrench-feasible", "N", balance.reserve.node()});
+  draft.scope.mark_as_defined(model.margins.back().node);
+}
+
+}  // namespace pkm
