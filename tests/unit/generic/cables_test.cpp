@@ -235,6 +235,15 @@ TEST(Cables, WrenchClosureOfFourCables) {
   EXPECT_GT(closed, 100u);
 }
 
+/// A user's file; the numbers are linear programs of tests/data/cables/references.py for its dimensions.
+TEST(Cables, EightCablesOfAUser) {
+  const auto robot = read(text_in(PKM_TEST_DATA "/robots/eight-cables.toml"));
+  const std::vector<double> design = nominal_design(robot->info());
+  EXPECT_NEAR(value_at(*robot, design, {0, 0, 1, 0, 0, 0}, "tension_reserve"), 54.27669629355703, 1e-9);
+  EXPECT_NEAR(value_at(*robot, design, {2.5, 1.5, 1, 0, 0, 0}, "tension_reserve"), 6.856300666847255, 1e-9);
+  EXPECT_NEAR(value_at(*robot, design, {0, 0, 2.4, 0, 0, 0}, "tension_reserve"), -78.63463933988606, 1e-9);
+}
+
 TEST(Cables, MarginsHaveDerivativesByParameters) {
   const auto robot = read(cable_text("ipanema"));
   const std::vector<double> design = nominal_design(robot->info());
