@@ -101,7 +101,12 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
   tell(mechanism.columns(), "exact workspace by columns",
        "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
-  tell(mechanism.bounds(), "certified bounds of the workspace", "pkmopt certify, by interval arithmetic", "");
+  const LimitedDrives* const limited = find_limited_drives(mechanism);
+  const bool has_cables = limited && !limited->cables().empty();
+  tell(mechanism.bounds(), "certified bounds of the workspace",
+       std::string("pkmopt certify, by interval arithmetic") +
+           (has_cables ? "; intervals of the tensions are wide, so that large boxes may stay undecided" : ""),
+       "");
   const Unsupported undefined = why_no_conditioning(mechanism.info());
   tell(!undefined, "conditioning", "", undefined.value_or(""));
   for (const UndefinedQuantity& quantity : mechanism.info().undefined_quantities)

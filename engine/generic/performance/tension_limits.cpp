@@ -6,8 +6,7 @@
 namespace pkm::generic {
 namespace {
 
-using expression::Minors, expression::TermMatrix;
-using limbs::Term;
+using expression::Minors, expression::Term, expression::TermMatrix;
 
 /// Rounding errors of determinants, relative to the sum of those of a matrix: smaller ones count as 0.
 constexpr double kRounding = 1e-12;

@@ -13,26 +13,25 @@
 #include <vector>
 
 #include "engine/expression/term_matrix.hpp"
-#include "engine/generic/limbs/limb.hpp"
 
 namespace pkm::generic {
 
 /// A set of loads in the coordinates of the platform [N, N m]: centre + sum of u_k half_axes[k] over all |u_k| <= 1.
 struct LoadSet {
-  std::vector<limbs::Term> centre;
-  std::vector<std::vector<limbs::Term>> half_axes;
+  std::vector<expression::Term> centre;
+  std::vector<std::vector<expression::Term>> half_axes;
 };
 
 struct TensionBalance {
   /// Tension factor (Pham, Yeo, Yang 2009): the largest ratio of the minimum to the maximum tension among tensions > 0
   /// that balance each other. It is negative if there are none, i.e. outside of the wrench-closure workspace.
-  limbs::Term factor;
+  expression::Term factor;
   /// The largest s [N] for which all loads are balanced by tensions between t_min + s and t_max - s; negative at poses
   /// that are not wrench-feasible, -infinity at singular poses.
-  limbs::Term reserve;
+  expression::Term reserve;
   /// Radius of the largest ball of forces [N] at the platform's origin that are balanced in addition to all loads.
   /// Negative: not all loads are balanced. std::nullopt: the origin does not move.
-  std::optional<limbs::Term> capacity;
+  std::optional<expression::Term> capacity;
 };
 
 /// @param J            joints x coordinates: q' = J x'; at least as many joints as coordinates
@@ -41,7 +40,7 @@ struct TensionBalance {
 ///                     drives without limits than coordinates
 /// @param loads        the sets of loads, each of which has to be balanced
 TensionBalance tension_balance(const expression::TermMatrix& J, const expression::TermMatrix& translation,
-                               const std::vector<std::optional<std::array<limbs::Term, 2>>>& tensions,
+                               const std::vector<std::optional<std::array<expression::Term, 2>>>& tensions,
                                const std::vector<LoadSet>& loads);
 
 }  // namespace pkm::generic
