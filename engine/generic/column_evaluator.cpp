@@ -101,12 +101,7 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
   void add_all_samples(std::size_t level, const S& weight, std::span<const S> parameters, SampleScratch<S>& samples,
                        DesignScratch& design, WorkspaceResult<S>& result) const {
     if (level == volume_.outermost().coordinates().size()) {
-      if (volume_.has_outermost()) {
-        if constexpr (std::is_same_v<S, double>)
-          volume_.slices().measure(design.inputs, design.volume.integral);
-        else
-          volume_.slices().measure_for_gradient(design.inputs, design.volume.integral);
-      }
+      if (volume_.has_outermost()) volume_.place_nodes(design.inputs, !std::is_same_v<S, double>, design.volume);
       return add_samples(weight, parameters, samples, design, result);
     }
     const std::size_t input = e_.model.inputs.coordinate(volume_.outermost().coordinates()[level]);

@@ -8,6 +8,9 @@
 namespace pkm::generic {
 namespace {
 
+/// Maximum number of slices that the search for the nodes of samples examines, if the volume is known without slices.
+constexpr long kMaxSlicesForNodes = 4'000'000;
+
 /// The coordinates that are integrated over although they are not swept. The quadrature over slices has at most three
 /// coordinates, swept ones included; OuterQuadrature integrates over the outermost ones beyond that.
 struct IntegratedCoordinates {
@@ -122,6 +125,9 @@ ColumnVolume::ColumnVolume(const Evaluation& evaluation, const WorkspacePlan& pl
     if (edges.why_not().empty()) edges_.emplace(std::move(edges));
   }
   if (needs_samples || (!edges_ && !corner_curves_)) slices();
+  if (!needs_samples) return;
+  corner_curves::Volume curves(slices().plan(), columns.tolerance);
+  if (curves.why_not().empty()) ranges_for_nodes_.emplace(std::move(curves));
 }
 
 const NestedIntegral& ColumnVolume::slices() const {
@@ -151,8 +157,10 @@ SlicePlan ColumnVolume::choose_slices() const {
     const auto per_slice = static_cast<long>(plan.surfaces.size() + 8 * plan.independent.back().size());
     NestedIntegral::Budget budget;
     (has_curves ? budget.operations : budget.evaluations) = has_curves ? least : std::max(1L, least / per_slice);
-    NestedIntegral(plan, tolerance).measure(inputs, scratch, budget);
-    const long work = has_curves ? scratch.column.operations : scratch.evaluations * per_slice;
+    const Integral<double> found = NestedIntegral(plan, tolerance).measure(inputs, scratch, budget);
+    // the work for an empty workspace says nothing about that for other designs
+    if (!has_curves && &plan == &first && found.value == 0) return first;
+    const long work = has_curves ? scratch.column.operations : found.evaluations * per_slice;
     if (work >= least) continue;
     best = &plan;
     least = work;
@@ -200,18 +208,40 @@ Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, st
     found = corner_curves_->measure(inputs, scratch.corner_curves);
     if (found && needs_gradient) corner_curves_->add_gradient(by_input, scratch.corner_curves);
   }
-  // Samples need the slices in any case, but with outermost coordinates they have slices of their own.
-  if (found && !(needs_samples_ && !has_outermost())) return *found;
+  // With outermost coordinates, samples have slices of their own.
+  if (found && (!needs_samples_ || has_outermost())) return *found;
+  if (found && place_between_ranges(inputs, scratch)) return *found;
+  if (found) {  // the slices only place the nodes
+    const Integral<double> by_slices = slices().measure(inputs, scratch.integral, {.evaluations = kMaxSlicesForNodes});
+    // the error includes the part of the workspace that the slices, and thus the samples, have missed
+    const double missed = std::fabs(found->value - by_slices.value);
+    scratch.is_sampled = by_slices.evaluations >= kMaxSlicesForNodes;
+    const double error = scratch.is_sampled ? missed : missed - by_slices.error;
+    return {found->value, std::max(found->error, error), by_slices.evaluations};
+  }
   const Integral<double> by_slices = needs_gradient ? slices().measure_for_gradient(inputs, scratch.integral)
                                                     : slices().measure(inputs, scratch.integral);
-  if (found) {  // the error includes the part of the workspace that the slices, and thus the samples, have missed
-    const double missed = std::fabs(found->value - by_slices.value) - by_slices.error;
-    return {found->value, std::max(found->error, missed), by_slices.evaluations};
-  }
   if (needs_gradient) slices().add_gradient(by_input, scratch.integral);
   // a single slice, without outer coordinates, is exact
   scratch.is_sampled = scratch.is_sampled || !slices().plan().order.outer.empty();
   return by_slices;
+}
+
+void ColumnVolume::place_nodes(std::span<const double> inputs, bool for_gradient, Scratch& scratch) const {
+  if (place_between_ranges(inputs, scratch)) return;
+  if (for_gradient)
+    slices().measure_for_gradient(inputs, scratch.integral);
+  else
+    slices().measure(inputs, scratch.integral);
+}
+
+/// Places the nodes of the samples between the ends of the ranges of corner curves.
+/// @return false if corner curves do not support the slices or the design
+bool ColumnVolume::place_between_ranges(std::span<const double> inputs, Scratch& scratch) const {
+  if (!ranges_for_nodes_ || !ranges_for_nodes_->find_ranges(inputs, scratch.ranges)) return false;
+  ranges_for_nodes_->find_critical_values(scratch.ranges, scratch.critical_values);
+  slices().place_nodes(inputs, scratch.critical_values, scratch.integral);
+  return true;
 }
 
 }  // namespace pkm::generic

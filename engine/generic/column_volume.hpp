@@ -24,12 +24,15 @@ class ColumnVolume {
     IntegralScratch integral;
     corner_curves::Volume::Scratch corner_curves;
     edges::EdgePlan::Scratch edges;
+    corner_curves::Volume::Scratch ranges;
+    std::vector<double> critical_values;
     bool is_sampled = false;  ///< true: the last volume was computed from slices, which can miss a connected component
   };
 
   /// Throws std::invalid_argument with a message if the workspace has no exact columns.
   /// @param evaluation     must outlive this object
-  /// @param needs_samples  true: the caller will visit the nodes of slices() after measure()
+  /// @param needs_samples  true: the caller will visit the nodes of slices() after measure(), with outermost
+  ///                       coordinates after place_nodes()
   ColumnVolume(const Evaluation& evaluation, const WorkspacePlan& plan, const ColumnOptions& columns, std::size_t mode,
                bool needs_samples);
 
@@ -45,7 +48,9 @@ class ColumnVolume {
   /// The quadrature over slices. Its plan is chosen when this function is first called, because the choice can take
   /// longer than many evaluations of a volume from edges.
   const NestedIntegral& slices() const;
-  /// The quadrature over the outermost coordinates, which exist if more than three coordinates are integrated.
+  /// Prepares slices().for_each_node(). @param for_gradient  true: the nodes will have derivatives
+  void place_nodes(std::span<const double> inputs, bool for_gradient, Scratch& scratch) const;
+  /// The quadrature over the coordinates beyond three.
   const OuterQuadrature& outermost() const { return outermost_; }
   bool has_outermost() const { return !outermost_.coordinates().empty(); }
 
@@ -54,6 +59,7 @@ class ColumnVolume {
   void choose_corner_curves(double tolerance);
   std::vector<double> inputs_of_default_design() const;
   Integral<double> measure_inside(std::span<const double> inputs, std::span<double> by_input, Scratch& scratch) const;
+  bool place_between_ranges(std::span<const double> inputs, Scratch& scratch) const;
 
   const Evaluation& e_;
   WorkspacePlan plan_;
@@ -68,6 +74,9 @@ class ColumnVolume {
   std::optional<edges::EdgePlan> edges_;
   /// Volume by corner curves; absent if they cannot integrate any plan.
   std::optional<corner_curves::Volume> corner_curves_;
+  /// Corner curves of the plan of slices(), between whose ranges the nodes of samples lie; absent if no samples are
+  /// needed, or if they cannot integrate this plan.
+  std::optional<corner_curves::Volume> ranges_for_nodes_;
 };
 
 }  // namespace pkm::generic

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "engine/core/stop.hpp"
 #include "engine/math/hash.hpp"
@@ -20,7 +22,11 @@ constexpr double kMinResolvableWidthInLines = 1e-4;  // kMinResolvableWidth for 
 constexpr std::size_t kMaxIntervals = 3000;
 // if so many consecutive bisections leave nearly all of a change in one half, it is a discontinuity
 constexpr int kBisectionsOfJump = 5;
-// maximum of missed_at_ends(), relative to the largest slice, if derivatives will be computed
+// At this depth of the subdivision and beyond, an interval is not divided at changes of the type if its error is at
+// most kNoise of what the tolerance permits for a workspace that fills the whole range.
+constexpr int kReliableDepth = 2;
+constexpr double kNoise = 0.01;
+// relative to the largest slice: tolerance of missed_at_ends() if derivatives will be computed
 constexpr double kEndTolerance = 1e-7;
 
 /// Polynomial through the measures of the slices at the nodes of kronrod_rule(), evaluated at t in [0, 1] by the
@@ -58,9 +64,22 @@ double missed_at_ends(const SmoothInterval& part, const std::array<Slice, Nested
   return std::max(std::fabs(at_lower - part.below.measure), std::fabs(at_upper - part.above.measure));
 }
 
-/// Whether one half of an interval contains nearly all of the change of the measure, as at a discontinuity. If a
-/// square-root singularity is at one end of the interval, the half next to it contains only 71 % of the change.
-/// @param below, middle, above  slices at the two ends and in the middle of the interval
+/// The interval between two adjacent critical values, not yet integrated.
+SmoothInterval interval_between(const CriticalValue& lower, const CriticalValue& upper) {
+  const auto closing = [](const CriticalValue& at, const Slice& outside) {
+    return at.is_box ? kBox : outside.hash == 0 ? outside.violated : kCriticalValue;
+  };
+  return {.piece = {lower.at, upper.at, lower.root, upper.root},
+          .below = lower.above,
+          .above = upper.below,
+          .lower = closing(lower, lower.below),
+          .upper = closing(upper, upper.above),
+          .beyond_lower = lower.below.measure,
+          .beyond_upper = upper.above.measure};
+}
+
+/// Whether one half of an interval contains nearly all of the change of the measure across it, as at a discontinuity.
+/// At a square-root singularity at one end the half next to it contains 71 % of the change.
 bool is_one_sided(const Slice& below, const Slice& middle, const Slice& above) {
   const double first = std::fabs(middle.measure - below.measure), second = std::fabs(above.measure - middle.measure);
   return std::max(first, second) > 0.95 * (first + second);
@@ -102,6 +121,17 @@ Integral<double> NestedIntegral::measure_for_gradient(std::span<const double> in
 
 Integral<double> NestedIntegral::measure_all(std::span<const double> inputs, IntegralScratch& scratch,
                                              const Budget& budget) const {
+  start(inputs, scratch, budget);
+  const double unknown = find_univariate_changes(inputs, scratch);
+  const Slice all = inside(0, scratch);
+  const long evaluations = std::exchange(scratch.evaluations, 0);
+  // the budget is that of the search; the nodes of for_each_node() and add_gradient() are few
+  scratch.max_evaluations = std::numeric_limits<long>::max();
+  scratch.measured = true;
+  return {all.measure, all.error + unknown, evaluations};
+}
+
+void NestedIntegral::start(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const {
   const expression::Program& program = plan().program;
   scratch.registers.resize(program.registers());
   scratch.levels.resize(levels() + 1);
@@ -114,10 +144,6 @@ Integral<double> NestedIntegral::measure_all(std::span<const double> inputs, Int
   scratch.column.max_operations = budget.operations;
   scratch.measured = scratch.has_hints = false;
   scratch.kept.clear();
-  const double unknown = find_univariate_changes(inputs, scratch);
-  const Slice all = inside(0, scratch);
-  scratch.measured = true;
-  return {all.measure, all.error + unknown, scratch.evaluations};
 }
 
 void NestedIntegral::set(std::size_t level, double at, IntegralScratch& scratch) const {
@@ -218,7 +244,6 @@ Slice NestedIntegral::integrate(std::size_t level, IntegralScratch& scratch) con
   const double low = scratch.registers[from], high = scratch.registers[to], whole = high - low;
   if (!(whole > 0)) return {};
   CriticalValues& critical_values = own.critical_values[0];
-  critical_values.clear();
   choose_samples(level, low, high, scratch);
   if (level == 0) add_samples_between_changes(low, high, scratch);
   if (level == 0) scratch.is_scanning = true;
@@ -228,10 +253,7 @@ Slice NestedIntegral::integrate(std::size_t level, IntegralScratch& scratch) con
   if (levels() == 1 && !ends_in_lines()) refine_support(scratch);
   if (level == 0) scratch.is_scanning = false;
   if (level + 1 < levels()) resample_changes(level, scratch);
-  critical_values.push_back({low, false, {}, own.scanned.front(), true});
-  for (std::size_t i = 1; i < own.scanned.size(); ++i)
-    find_critical_values(level, own.scanned[i - 1], own.scanned[i], whole, critical_values, scratch);
-  critical_values.push_back({high, false, own.scanned.back(), {}, true});
+  find_all_critical_values(level, low, high, critical_values, scratch);
   add_intervals(level, critical_values, whole, 0, scratch);
   refine(level, whole, scratch);
 
@@ -258,24 +280,63 @@ Slice NestedIntegral::integrate(std::size_t level, IntegralScratch& scratch) con
   return sum;
 }
 
+/// Finds the critical values between the slices in Level::scanned, and adds the ends of the range.
+void NestedIntegral::find_all_critical_values(std::size_t level, double low, double high,
+                                              CriticalValues& critical_values, IntegralScratch& scratch) const {
+  std::vector<Slice>& scanned = scratch.levels[level].scanned;
+  critical_values.assign(1, {low, false, {}, scanned.front(), true});
+  for (std::size_t i = 1; i < scanned.size(); ++i)
+    find_critical_values(level, scanned[i - 1], scanned[i], high - low, critical_values, scratch);
+  critical_values.push_back({high, false, scanned.back(), {}, true});
+}
+
 void NestedIntegral::add_intervals(std::size_t level, const CriticalValues& critical_values, double whole, int depth,
                                    IntegralScratch& scratch) const {
-  const auto closing = [](const CriticalValue& at, const Slice& outside) {
-    return at.is_box ? kBox : outside.hash == 0 ? outside.violated : kCriticalValue;
-  };
   for (std::size_t i = 1; i < critical_values.size(); ++i) {
     const CriticalValue &lower = critical_values[i - 1], &upper = critical_values[i];
     scratch.levels[level].irreducible_error += lower.missed_error;
     if (lower.above.hash == 0 && upper.below.hash == 0) continue;
-    add_interval(level,
-                 {.piece = {lower.at, upper.at, lower.root, upper.root},
-                  .below = lower.above,
-                  .above = upper.below,
-                  .lower = closing(lower, lower.below),
-                  .upper = closing(upper, upper.above),
-                  .beyond_lower = lower.below.measure,
-                  .beyond_upper = upper.above.measure},
-                 whole, depth, scratch);
+    add_interval(level, interval_between(lower, upper), whole, depth, scratch);
+  }
+}
+
+void NestedIntegral::place_nodes(std::span<const double> inputs, std::span<const double> critical_values,
+                                 IntegralScratch& scratch) const {
+  scratch.for_gradient = true;
+  start(inputs, scratch, {});
+  scratch.levels[0].parts.clear();
+  const auto& independent = plan().independent[0];
+  if (std::ranges::all_of(independent, [&](std::uint32_t at) { return is_satisfied(scratch.registers[at]); }))
+    place_intervals(critical_values, scratch);
+  scratch.measured = true;
+}
+
+/// Divides the range of the only outer coordinate at its critical values, given to an accuracy below kBeside: they are
+/// bracketed between two slices beside them, because derivatives need more digits at roots of even order.
+void NestedIntegral::place_intervals(std::span<const double> values, IntegralScratch& scratch) const {
+  // relative to the range: distance of these slices, and of values that are bracketed together
+  constexpr double kBeside = 1e-6, kTogether = 4 * kBeside;
+  IntegralScratch::Level& own = scratch.levels[0];
+  const auto [from, to] = plan().range[0];
+  const double low = scratch.registers[from], high = scratch.registers[to], whole = high - low;
+  if (!(whole > 0)) return;
+  own.places.assign(1, low + kClearDistance * whole);
+  const auto add = [&](double at) {
+    if (at > own.places.back() && at < high - kClearDistance * whole) own.places.push_back(at);
+  };
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i == 0 || values[i] - values[i - 1] > kTogether * whole) add(values[i] - kBeside * whole);
+    if (i + 1 == values.size() || values[i + 1] - values[i] > kTogether * whole) add(values[i] + kBeside * whole);
+  }
+  own.places.push_back(high - kClearDistance * whole);
+  own.scanned.resize(own.places.size());
+  find_slices(0, own.places, own.scanned, scratch);
+  CriticalValues& critical_values = own.critical_values[0];
+  find_all_critical_values(0, low, high, critical_values, scratch);
+  for (std::size_t i = 1; i < critical_values.size(); ++i) {
+    const CriticalValue &lower = critical_values[i - 1], &upper = critical_values[i];
+    if ((lower.above.hash != 0 || upper.below.hash != 0) && upper.at - lower.at >= kMinWidth * whole)
+      own.parts.push_back(interval_between(lower, upper));
   }
 }
 
@@ -319,7 +380,15 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     embedded += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
-  if (!same && depth < kMaxDepth &&
+  // rule_error() would add in another order, and rounding errors decide which of two symmetric intervals is bisected
+  // first.
+  for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
+    spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
+  part.error = quadpack_error(std::fabs(part.value - embedded), spread);
+  // Where the boundary has cusps, rounding errors change the type of an outer slice again and again.
+  const bool is_noise =
+      level + 1 < levels() && depth >= kReliableDepth && part.error <= kNoise * tolerance_ * own.largest * whole;
+  if (!same && depth < kMaxDepth && !is_noise &&
       width > (ends_in_lines() ? kMinResolvableWidthInLines : kMinResolvableWidth) * whole && !is_exhausted(scratch)) {
     CriticalValues& critical_values = own.critical_values[static_cast<std::size_t>(depth) + 1];
     const Slice below{.measure = part.beyond_lower, .violated = part.lower};
@@ -334,13 +403,8 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     critical_values.push_back({part.piece.upper, part.piece.sqrt_at_upper, part.above, above, part.upper == kBox});
     return add_intervals(level, critical_values, whole, depth + 1, scratch);
   }
-  // rule_error() would add the terms in another order; rounding errors then decide which of two symmetric intervals is
-  // bisected first.
-  for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
-    spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
-  part.error = quadpack_error(std::fabs(part.value - embedded), spread);
   if (scratch.for_gradient && same) part.missed_at_ends = missed_at_ends(part, slices);
-  if (!same) {
+  if (!same && !is_noise) {
     const auto [least, largest] = std::ranges::minmax(slices, {}, &Slice::measure);
     part.irreducible_error += width * (largest.measure - least.measure);
   }

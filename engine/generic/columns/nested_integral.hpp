@@ -149,9 +149,13 @@ class NestedIntegral {
   /// Adds the derivatives of the measure with respect to the graph's inputs to by_input; to be called after
   /// measure_for_gradient().
   void add_gradient(std::span<double> by_input, IntegralScratch& scratch) const;
-  /// Calls visit(outer coordinates, v, z, weight) at quadrature nodes in the workspace; to be called after measure(). S
-  /// is double, or Dual4: then the nodes and weights have derivatives with respect to the design, so that sums over the
-  /// nodes have derivatives.
+  /// Prepares for_each_node() without a measure, if there is one outer coordinate and all of its critical values are
+  /// known to about 1e-6 of its range.
+  /// @param critical_values  in ascending order; values at which the type of the slice does not change are ignored
+  void place_nodes(std::span<const double> inputs, std::span<const double> critical_values,
+                   IntegralScratch& scratch) const;
+  /// Calls visit(outer coordinates, v, z, weight) at quadrature nodes inside the columns, after measure() or
+  /// place_nodes(). S is double or Dual4: nodes are functions of the design, so that sums over them have derivatives.
   template <class S, class Visit>
   void for_each_node(std::span<const S> inputs, const GaussRule& outer, const GaussRule& inner,
                      IntegralScratch& scratch, const Visit& visit) const {
@@ -166,6 +170,7 @@ class NestedIntegral {
   std::size_t levels() const { return plan().order.outer.size(); }
   bool ends_in_lines() const { return std::holds_alternative<Column>(innermost_); }
   Integral<double> measure_all(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
+  void start(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
   void set(std::size_t level, double at, IntegralScratch& scratch) const;
   /// Whether the budget is used up. Parts of the workspace that are undecided by then count as error.
   bool is_exhausted(const IntegralScratch& scratch) const;
@@ -188,6 +193,9 @@ class NestedIntegral {
   static void add_expected_samples(double outside, IntegralScratch::Level& own);
   static void record_intervals(double outside, IntegralScratch::Level& own);
   Slice integrate(std::size_t level, IntegralScratch& scratch) const;
+  void place_intervals(std::span<const double> values, IntegralScratch& scratch) const;
+  void find_all_critical_values(std::size_t level, double low, double high, CriticalValues& critical_values,
+                                IntegralScratch& scratch) const;
   bool is_discontinuous(const Slice& low, const Slice& high, std::size_t level, const IntegralScratch& scratch) const;
   void search_empty_gaps(IntegralScratch& scratch) const;
   void search_sparse_components(IntegralScratch& scratch) const;

@@ -15,10 +15,10 @@ constexpr double kBracketWidth = 1e-15, kBracketWidthOfLines = 1e-11;
 // relative to the range of the coordinate: if two slices are farther apart, a small component can be the reason of
 // their difference, so that inner coordinates are sampled as densely as in the first scan
 constexpr double kSmallDistance = 1e-3;
-// relative to the range of the coordinate: closer critical values are merged
-constexpr double kMergeDistanceOfValues = 1e-8;
-// If the type changes again within this many steps, rounding errors are the reason: the next step is 8 times longer.
-constexpr double kStepFactor = 64;
+constexpr double kMergeDistanceOfValues = 1e-8;  // relative to the range: closer critical values are merged
+// A change of type within kStepFactor steps of the previous one is due to rounding errors: the next step is longer by
+// the factor kStepGrowth. The slices of coordinates that are not the innermost are integrals, hence the larger factor.
+constexpr double kStepFactor = 64, kStepGrowth = 8, kStepGrowthOfOuter = 512;
 
 /// Merges two adjacent critical values into `first`, if they are close. Near a tangency of conics, the type changes a
 /// second time slightly later, when rounding errors no longer hide the intersections. The merged value is the one at
@@ -46,8 +46,8 @@ bool NestedIntegral::is_discontinuous(const Slice& low, const Slice& high, std::
          std::fabs(low.measure - high.measure) > kDiscontinuity * scratch.levels[level].largest;
 }
 
-/// Appends the critical values between the slices `from` and `to` to critical_values, in ascending order.
-/// @param whole  length of the range of the coordinate
+/// Appends the critical values between two slices in ascending order. When the budget is used up, a single one in the
+/// middle stands for them.
 void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& to, double whole,
                                           CriticalValues& critical_values, IntegralScratch& scratch) const {
   const double least = kClearDistance * whole;
@@ -75,9 +75,10 @@ void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& 
       to = again;
       if (is_other) continue;
     }
-    // If rounding errors decide the type, it changes repeatedly within a small distance; steps of increasing length
-    // leave this region.
-    step = more > 0 && high.at - from.at < kStepFactor * step ? 8 * step : least;
+    // If the type depends on rounding errors, it changes repeatedly within a small distance; increasing steps leave
+    // this region.
+    const double growth = level + 1 < levels() ? kStepGrowthOfOuter : kStepGrowth;
+    step = more > 0 && high.at - from.at < kStepFactor * step ? growth * step : least;
     const double beyond = high.at + step;
     const Slice after = beyond < to.at ? slice(level, beyond, scratch) : to;
     CriticalValue found{high.at, true, low, after};
@@ -87,6 +88,9 @@ void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& 
       critical_values.push_back(found);
     from = after;
   }
+  if (from.hash == to.hash || !is_exhausted(scratch)) return;
+  critical_values.push_back({0.5 * (from.at + to.at), false, from, to});
+  scratch.levels[level].irreducible_error += (to.at - from.at) * std::max(from.measure, to.measure);
 }
 
 void NestedIntegral::find_features(std::size_t level, BoundaryFeatures& features,

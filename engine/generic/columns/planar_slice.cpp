@@ -245,11 +245,11 @@ std::vector<std::array<double, 2>> PlanarSlice::columns(double v, std::span<doub
 bool PlanarSlice::has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch) {
   // A vertex within this distance in t of a turning point counts as one: near a tangency, intersections can lie on
   // either side of it.
-  constexpr double kBracketWidth = 1e-7;
+  constexpr double kNearTurningPoint = 1e-7;
   return vertex < scratch.vertices.size() &&
          std::ranges::any_of(scratch.vertices, [&](const PlanarSliceScratch::Vertex& other) {
            return (other.label & kKind) == kTurningPoint &&
-                  std::fabs(other.t - scratch.vertices[vertex].t) <= kBracketWidth;
+                  std::fabs(other.t - scratch.vertices[vertex].t) <= kNearTurningPoint;
          });
 }
 

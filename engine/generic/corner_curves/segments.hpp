@@ -52,8 +52,9 @@ struct SegmentScratch {
   std::size_t count = 0;
   DecompositionScratch decomposition;
   LimitScratch limits;
-  /// Number of values of the outer coordinate at which the program's stage of this coordinate was evaluated.
-  long runs = 0;
+  long runs = 0;  ///< number of evaluations of the stage of the outer coordinate
+
+  std::span<Segment> filled() { return std::span(segments).first(count); }
 };
 
 /// Evaluates that stage of the program which depends on the outer coordinate, at the value t of this coordinate.

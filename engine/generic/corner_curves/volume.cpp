@@ -18,30 +18,49 @@ double Volume::Scratch::work() const {
   return sum;
 }
 
-std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, Scratch& scratch) const {
-  // maximum length in tau of intervals in which decisions on vertices contradict each other
-  constexpr double kBalanced = 1e-10;
-  constexpr std::size_t kMaxCells = 4000;
-  // the integration aims at an error of the tolerance times this factor, if this is cheap
-  constexpr double kBetter = 0.1;
+bool Volume::can_be_feasible(const SegmentScratch& scratch) const {
+  return std::ranges::all_of(plan_.independent[0],
+                             [&](std::uint32_t at) { return is_satisfied(scratch.registers[at]); });
+}
+
+bool Volume::find_ranges(std::span<const double> inputs, Scratch& scratch) const {
+  constexpr double kBalanced = 1e-10;  // maximum length in tau on which decisions may contradict each other
   SegmentScratch& s = scratch.segments;
+  s.count = 0;
   const expression::Program& program = plan_.program;
   s.registers.resize(program.registers());
   program.start<double>(s.registers);
   program.run<double>(0, inputs, s.registers);
-  const auto holds = [&](std::uint32_t at) { return is_satisfied(s.registers[at]); };
-  if (!std::ranges::all_of(plan_.independent[0], holds)) return Integral<double>{};
+  if (!can_be_feasible(s)) return true;
   const auto range = [&](std::size_t level) {
     const auto [from, to] = plan_.range[level];
     return Interval(std::fmin(s.registers[from], s.registers[to]), std::fmax(s.registers[from], s.registers[to]));
   };
   start_limits(plan_, inputs, {range(0), range(1)}, s.limits);
-  if (!divide(plan_, outer_, s)) return {};
+  return divide(plan_, outer_, s) && std::ranges::all_of(s.filled(), [](const Segment& segment) {
+           return segment.integral.decomposition.unbalanced <= kBalanced;
+         });
+}
 
-  const std::span<Segment> segments = std::span(s.segments).first(s.count);
+void Volume::find_critical_values(Scratch& scratch, std::vector<double>& values) const {
+  values.clear();
+  for (const Segment& segment : scratch.segments.filled()) {
+    const SegmentIntegral& integral = segment.integral;
+    for (const ActiveRange& range : integral.decomposition.ranges)
+      for (const double tau : {range.low, range.high})
+        values.push_back(map_node(integral.outer, 0.5 * (1 + tau)).point);
+  }
+  std::ranges::sort(values);
+}
+
+std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, Scratch& scratch) const {
+  constexpr std::size_t kMaxCells = 4000;
+  constexpr double kBetter = 0.1;  // the relative error aimed at is this fraction of the tolerance
+  if (!find_ranges(inputs, scratch)) return {};
+  if (!can_be_feasible(scratch.segments)) return Integral<double>{};
+  const std::span<Segment> segments = scratch.segments.filled();
   std::size_t cells = 0;
   for (Segment& segment : segments) {
-    if (segment.integral.decomposition.unbalanced > kBalanced) return {};
     segment.integral.start();
     cells += segment.integral.cells.size();
   }

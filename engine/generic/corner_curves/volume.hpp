@@ -28,10 +28,18 @@ class Volume {
   /// @param inputs  values of the graph's inputs, including the fixed coordinates
   /// @return std::nullopt if the design is not supported, because it is degenerate or interpolation does not converge
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch) const;
-  /// Adds the derivatives of the volume with respect to the graph's inputs to by_input; to be called after measure().
+  /// The first part of measure(): finds the ranges of the outer coordinate in which crossings are vertices.
+  /// @return false if the design is not supported
+  bool find_ranges(std::span<const double> inputs, Scratch& scratch) const;
+  /// Sorted ends of the ranges, after measure() or find_ranges(), among them all critical values of the outer
+  /// coordinate inside the search box.
+  void find_critical_values(Scratch& scratch, std::vector<double>& values) const;
+  /// Adds the derivatives of the volume with respect to the graph's inputs, after measure().
   void add_gradient(std::span<double> by_input, Scratch& scratch) const;
 
  private:
+  /// Whether the constraints that depend on the design only are satisfied.
+  bool can_be_feasible(const SegmentScratch& scratch) const;
   void add_segment_gradient(const Segment& segment, Scratch& scratch) const;
   void add_node_gradient(const Segment& segment, std::size_t node, double tau, Scratch& scratch) const;
   void add_limit_gradient(std::size_t limit, double v, double adjoint, Scratch& scratch) const;

@@ -1,7 +1,6 @@
-// Volumes of mechanism files by corner curves or edges, compared with those of slices, which are computed in addition
-// if samples are needed (where the two differ by more than the error of slices, the difference is part of the error),
-// and with certified bounds. PKM_CORNER_DESIGNS: number of random designs of each mechanism; PKM_CORNER_FIRST: number
-// of the first one, to repeat a case.
+// Volumes of mechanism files by corner curves or edges, compared with those of slices and with certified bounds.
+// PKM_CORNER_DESIGNS: number of random designs of each mechanism; PKM_CORNER_FIRST: number of the first one, to repeat
+// a case.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -9,6 +8,7 @@
 
 #include "engine/workspace/pose_quantities.hpp"
 #include "tests/unit/contracts/catalogue_problem.hpp"
+#include "tests/unit/generic/slices_of.hpp"
 
 namespace pkm {
 namespace {
@@ -20,12 +20,14 @@ TEST_P(CornerCurveVolumes, AreThoseOfSlices) {
   const WorkspacePlan plan = test::columns(mechanism.info());
   const std::vector<double> design = test::nominal(mechanism.info());
   const WorkspaceResult<double> curves = test::survey(mechanism, design, plan),
-                                slices = test::survey(mechanism, design, plan, {.fields = {&kConditioning}});
+                                sampled = test::survey(mechanism, design, plan, {.fields = {&kConditioning}});
+  const Integral<double> slices = test::SlicesOf(mechanism, design, plan).measure();
   EXPECT_GT(curves.volume, 0);
-  EXPECT_NE(curves.columns, slices.columns);  // by different methods
-  EXPECT_EQ(curves.volume, slices.volume);
+  EXPECT_NE(curves.columns, slices.evaluations);  // by different methods
+  EXPECT_EQ(curves.volume, sampled.volume);
   EXPECT_LT(curves.error, 1e-8);
-  EXPECT_LE(slices.error, curves.error + 1e-10);
+  EXPECT_LE(sampled.error, curves.error + 1e-10);
+  EXPECT_NEAR(curves.volume, slices.value, slices.error + (curves.error + 1e-10) * curves.volume);
 }
 
 /// Volumes without samples: of the Deltas, the Orthoglide and the Gough platform by edges where these are closed,
@@ -53,7 +55,8 @@ TEST_P(CornerCurveVolumes, OfRandomDesignsAreThoseOfSlices) {
     if (!(curves.volume > 0)) continue;
     ++compared;
     uncertain += curves.error > 1e-6;
-    const double difference = test::survey(mechanism, design, plan, {.fields = {&kConditioning}}).error - curves.error;
+    const Integral<double> slices = test::SlicesOf(mechanism, design, plan).measure();
+    const double difference = (std::fabs(curves.volume - slices.value) - slices.error) / curves.volume - curves.error;
     if (difference <= 1e-8) {
       largest = std::max(largest, difference);
       continue;
@@ -98,7 +101,8 @@ TEST(CornerCurveDesigns, OfLimitsOfTwoCoordinatesAreThoseOfSlices) {
     if (!(found.volume > 1e-3)) continue;
     ++compared;
     EXPECT_LT(found.error, 1e-8);
-    EXPECT_LT(test::survey(mechanism, design, plan, {.fields = {&kConditioning}}).error, 1e-8);
+    const Integral<double> slices = test::SlicesOf(mechanism, design, plan).measure();
+    EXPECT_NEAR(found.volume, slices.value, slices.error + 1e-8 * found.volume);
     std::vector<Dual4> duals(design.begin(), design.end());
     for (std::size_t i = 0; i < 4; ++i) duals[i] = Dual4::variable(design[i], static_cast<int>(i));
     WorkspaceResult<Dual4> with_derivatives;
@@ -156,7 +160,7 @@ TEST(CornerCurveDesigns, BoundedByConicsHaveTheDerivativesOfDifferences) {
   };
   const WorkspaceResult<double> found = volume(design);
   EXPECT_LT(found.error, 1e-8);
-  EXPECT_NE(found.columns, test::survey(mechanism, design, plan, {.fields = {&kConditioning}}).columns);
+  EXPECT_NE(found.columns, test::SlicesOf(mechanism, design, plan).measure().evaluations);  // by different methods
   const VolumeBounds bounds = mechanism.bounds()->volume(design, plan, "", {.gap = 0.1, .max_boxes = 100'000U});
   EXPECT_LT(bounds.lower, found.volume);
   EXPECT_GT(bounds.upper, found.volume);
