@@ -1,11 +1,14 @@
-// Exact volumes of mechanisms from files against bounds that rounding cannot make wrong: random designs, sweeps, limits
-// and fixed values. PKM_BOUNDED_DESIGNS: how many designs of each mechanism, to a gap of 2e-2 or the bounds of 200 000
-// boxes; PKM_BOUNDED_FIRST: the number of the first one, to see a finding again.
+// Exact volumes of mechanism files against certified bounds and against voxels, an independent quadrature: random
+// designs, sweeps, limits and fixed values. Environment variables of the campaign: PKM_BOUNDED_DESIGNS is the number of
+// designs of each mechanism, with bounds of a relative gap of 1e-2 or of 200 000 boxes (or PKM_BOUNDED_BOXES)
+// and with voxels of 64 cells along each of three coordinates; PKM_BOUNDED_FIRST is the number of the first design, to
+// repeat a finding.
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <iostream>
 
 #include "tests/unit/contracts/catalogue_problem.hpp"
@@ -94,13 +97,45 @@ class BoundedColumns : public ::testing::TestWithParam<std::string> {
   }
 };
 
+/// Volume by voxels, with an absolute error from the spread of six grids.
+struct VoxelVolume {
+  double value = 0, error = 0;
+};
+
+/// @param cells  number of cells along each of three coordinates; fewer coordinates have more
+VoxelVolume volume_by_voxels(const Mechanism& mechanism, const std::vector<double>& design, WorkspacePlan plan,
+                             double cells) {
+  constexpr int kGrids = 6;
+  const std::size_t axes = plan.swept.size();
+  const double along = std::pow(cells, 3.0 / static_cast<double>(axes));
+  double sum = 0, least = INFINITY, greatest = 0, cell = 0;
+  for (int grid = 0; grid < kGrids; ++grid) {
+    VoxelOptions voxels;
+    for (std::size_t axis = 0; axis < axes; ++axis)
+      voxels.cells[axis] = std::lround(along * (1 + 0.03 * grid)) + static_cast<int>(axis) * (grid % 2 + 1);
+    plan.method = voxels;
+    const WorkspaceResult<double> found = test::survey(mechanism, design, plan);
+    sum += found.volume / kGrids;
+    least = std::min(least, found.volume);
+    greatest = std::max(greatest, found.volume);
+    cell = found.cell_volume;
+  }
+  // Three times the spread of six values is at least ten times the standard deviation of their mean, as a rule. Where
+  // all grids agree, the spread says little.
+  return {sum, 3 * (greatest - least) + 10 * cell + 1e-3 * sum};
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
 TEST_P(BoundedColumns, LieWithinTheBounds) {
   const char* const asked = std::getenv("PKM_BOUNDED_DESIGNS");
   // slices of Par4 that contain its rotation take seconds
   const unsigned usual = GetParam() == "par4" ? 5 : 25;
   const unsigned designs = asked ? static_cast<unsigned>(std::atoi(asked)) : usual;
   const std::vector<WorkspacePlan> all = plans();
+  constexpr double kGap = 1e-2;  // relative
   unsigned compared = 0, wrong = 0, vague = 0, wide = 0;
+  double by_columns = 0, by_bounds = 0, by_grids = 0;  // CPU times
   const auto start = std::chrono::steady_clock::now();
   const auto tell = [&] {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
@@ -108,6 +143,8 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
               << wide << " wide, " << std::lround(seconds.count()) << " s   " << std::flush;
   };
   const char* const begin = std::getenv("PKM_BOUNDED_FIRST");
+  const char* const given_boxes = std::getenv("PKM_BOUNDED_BOXES");
+  const unsigned boxes = given_boxes ? static_cast<unsigned>(std::atoi(given_boxes)) : asked ? 200'000U : 300U;
   const unsigned first = begin ? static_cast<unsigned>(std::atoi(begin)) : 0;
   for (unsigned k = first; compared < designs && k < first + 40 * designs; ++k) {
     Stream random(19, 0, k, Stream::Use::start);
@@ -116,27 +153,39 @@ TEST_P(BoundedColumns, LieWithinTheBounds) {
     if (k % 3 > 0) plan.limits = limits(k % 5 == 0, random);
     if (k % 3 > 1) hold(p, plan, random);
     if (file().refuse(p)) continue;
+    double last = cpu_seconds();
+    const auto spent = [&](double& time) {
+      const double now = cpu_seconds();
+      time += now - last;
+      last = now;
+    };
     const WorkspaceResult<double> exact = test::survey(file(), p, plan);
+    spent(by_columns);
     // those without a workspace are quick to bound, and say little
     if (!(exact.volume > 0) && k % 8 > 0) continue;
     SCOPED_TRACE("design " + std::to_string(k) + ": " + test::told(info(), p, plan));
-    const VolumeBounds bounds =
-        file().bounds()->volume(p, plan, "", {.gap = 0.02, .max_boxes = asked ? 200'000U : 300U});
+    const VolumeBounds bounds = file().bounds()->volume(p, plan, "", {.gap = kGap, .max_boxes = boxes});
+    spent(by_bounds);
+    const VoxelVolume voxels = volume_by_voxels(file(), p, plan, asked ? 64 : 16);
+    spent(by_grids);
     const double off = (exact.error + 1e-9) * exact.volume;
-    const bool holds = bounds.lower <= exact.volume + off && bounds.upper >= exact.volume - off;
-    EXPECT_TRUE(holds) << bounds.lower << ' ' << exact.volume << ' ' << bounds.upper << ", error " << exact.error;
+    const bool holds = bounds.lower <= exact.volume + off && bounds.upper >= exact.volume - off &&
+                       std::fabs(voxels.value - exact.volume) <= voxels.error + off;
+    EXPECT_TRUE(holds) << bounds.lower << ' ' << exact.volume << ' ' << bounds.upper << ", error " << exact.error
+                       << "; voxels " << voxels.value << " +- " << voxels.error;
     ++compared;
     wrong += !holds;
     vague += exact.error > 1e-6;
-    wide += bounds.gap() > 0.02;
+    wide += bounds.gap() > kGap;
     if (asked) tell();
   }
   if (asked) std::cerr << '\n';
   EXPECT_EQ(compared, designs);
   EXPECT_LE(vague, 1 + designs / 4);  // volumes of thin shells
   std::cout << GetParam() << ": " << compared << " volumes of " << all.size() << " sweeps, " << wrong
-            << " outside of their bounds; error estimates above 1e-6: " << vague << ", gaps above 2e-2: " << wide
-            << '\n';
+            << " outside of their bounds; error estimates above 1e-6: " << vague << ", gaps above " << kGap << ": "
+            << wide << "; CPU times of columns, bounds and voxels: " << by_columns << ", " << by_bounds << " and "
+            << by_grids << " s\n";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BoundedColumns,
