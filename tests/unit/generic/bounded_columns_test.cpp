@@ -120,6 +120,7 @@ VoxelVolume volume_by_voxels(const Mechanism& mechanism, const std::vector<doubl
     greatest = std::max(greatest, found.volume);
     cell = found.cell_volume;
   }
+  if (least == 0) return {sum, INFINITY};  // the grids miss workspaces thinner than a cell
   // Three times the spread of six values is at least ten times the standard deviation of their mean, as a rule. Where
   // all grids agree, the spread says little.
   return {sum, 3 * (greatest - least) + 10 * cell + 1e-3 * sum};
