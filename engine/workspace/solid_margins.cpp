@@ -232,8 +232,7 @@ CriticalPoint SolidMargins::minimise(const Solid& solid, std::size_t margin, std
       hessian(k, k) -= curvatures[static_cast<std::size_t>(k)];
     }
     if (!hessian.allFinite()) hessian = Eigen::MatrixXd::Identity(n, n) * size;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        Eigen::MatrixXd((hessian + hessian.transpose()) / 2));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd((hessian + hessian.transpose()) / 2));
     const Eigen::VectorXd curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-6 * size);
     Eigen::VectorXd step =
         -eigen.eigenvectors() * (eigen.eigenvectors().transpose() * reduced).cwiseQuotient(curvature);
