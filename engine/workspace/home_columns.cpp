@@ -55,8 +55,8 @@ class HomeColumns final : public WithGradients<HomeColumns> {
     std::unique_ptr<const WorkspaceEvaluator> evaluator;
   };
 
-  /// The columns on one side of the singularities, or on both. Prepared at the first use, because few designs need most
-  /// of them. @param nodes  true: with the poses of all nodes
+  /// The columns on one side of the singularities, or on both. Each is prepared at its first use, because
+  /// most designs need only one of them. @param nodes  true: with the poses of all nodes
   const WorkspaceEvaluator& analysis(std::int8_t side, bool nodes) const {
     Analysis& found = analyses_[static_cast<std::size_t>(side + 1)][nodes];
     std::call_once(found.is_prepared, [&] {

@@ -84,8 +84,8 @@ struct Pencil {
 };
 
 /// Crossings of two conics. In coordinates (X', Y', W') with t = X'/W' and s = Y'/W', one conic of the pencil is linear
-/// in s, and its root s(t) leaves a polynomial of degree four in t. The coordinates are rotated by angles without a
-/// meaning, so that no two crossings have the same t.
+/// in s, and its root s(t) leaves a polynomial of degree four in t. The coordinates are rotated by arbitrary angles, so
+/// that two crossings of symmetric curves do not have the same t.
 std::size_t crossings_of(const Pencil& pencil, std::array<Homogeneous, 4>& points) {
   // columns of a rotation matrix
   static constexpr std::array<Homogeneous, 3> kAxes = {
