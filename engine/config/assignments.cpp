@@ -14,7 +14,8 @@ namespace {
 
 SourceLocation place_of(const std::string& option) { return {"", 0, option}; }
 
-/// Parses one value. @param target  its name is empty if the option has a single value
+/// Parses one value of an option. @param target  the quantity that receives the value; its name is empty if the option
+/// has a single value
 double parse_value(const std::string& text, const std::string& option, const Assignable& target) {
   const std::string found = target.name.empty() ? text : target.name + "=" + text;
   const auto value = parse_quantity(text, target.unit);
@@ -179,7 +180,7 @@ std::vector<double> parse_values(const std::string& text, const std::string& opt
 
 std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, const std::vector<std::string>& names) {
   const std::string option = "--cells";
-  constexpr std::int64_t kMaxCells = 1'000'000;  // along one coordinate
+  constexpr std::int64_t kMaxCells = 1'000'000;  // maximum number of cells along one coordinate
   std::vector<std::string> all = lists;
   if (lists.size() == 1 && lists[0].find('=') == std::string::npos) {
     all.clear();
@@ -208,7 +209,8 @@ std::vector<std::optional<std::array<double, 2>>> parse_some_ranges(const std::v
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (!texts[i]) continue;
     std::string text = *texts[i];
-    if (const auto dots = text.find(".."); dots != std::string::npos) text.replace(dots, 2, ":");  // as printed
+    // Ranges are also accepted as FROM..TO, the form in which they are printed.
+    if (const auto dots = text.find(".."); dots != std::string::npos) text.replace(dots, 2, ":");
     const auto ends = split(text, ':');
     const std::string found = known[i].name + "=" + *texts[i];
     if (ends.size() != 2) throw ConfigError(place_of(option), found, "name=from:to");

@@ -50,7 +50,7 @@ std::vector<std::optional<double>> parse_assignments(const std::vector<std::stri
 std::vector<double> parse_all_assignments(const std::vector<std::string>& lists, const std::string& option,
                                           const std::vector<Assignable>& known);
 
-/// Values [SI] of `name=value` lists as for parse_assignments(), with 0 for names that are not given.
+/// Values [SI] of `name=value` lists as for parse_assignments(); the value is 0 for a name that is not given.
 std::vector<double> parse_some_assignments(const std::vector<std::string>& lists, const std::string& option,
                                            const std::vector<Assignable>& known);
 
@@ -60,7 +60,8 @@ Wrench<double> parse_wrench(const std::vector<std::string>& lists);
 /// Values [SI] of a list such as `0,30deg`, or of a range such as `-60deg:60deg:5` (from : to : count).
 std::vector<double> parse_values(const std::string& text, const std::string& option, const Assignable& what);
 
-/// Numbers of cells in the order of `names`: of `--cells x=20,z=20`, or the same number along all axes, `--cells 40`.
+/// Numbers of cells along the axes `names`, from an option such as `--cells x=20,z=20` or, for the same number along
+/// all axes, `--cells 40`.
 std::vector<std::int64_t> parse_cells(const std::vector<std::string>& lists, const std::vector<std::string>& names);
 
 /// Ranges [SI] of comma-separated `name=from:to` or `name=from..to` lists, in the order of `known`; std::nullopt for

@@ -46,7 +46,7 @@ Catalogue read_catalogue(const std::string& variable, SourceText file) {
     if (contains(found.names, name.text("text"))) throw name.refusal("another row has this name");
     found.names.push_back(name.text("text"));
   }
-  if (found.list == "motor") {  // errors name the lines of this file
+  if (found.list == "motor") {  // errors in these motors are reported with the lines of this file
     TomlValue motors;
     add_motors(motors, motors_of(found));
     read_motors(ConfigValue(motors, name_of_file, "").described_by(motor_file_keys()));

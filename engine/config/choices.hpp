@@ -19,13 +19,13 @@ namespace pkm {
 struct Catalogue {
   std::string variable;
   SourceText file;
-  std::string list;  ///< name of the list of tables
+  std::string list;  ///< name of the list of tables in the file, for example "motor"
   std::vector<TomlValue> rows;
   std::vector<std::string> names;
 };
 
 /// Reads the catalogues that the [variables] of a study name. Throws ConfigError.
-/// @param find  the file that a value names
+/// @param find  find(value): reads the file whose name is the value of a key
 std::vector<Catalogue> read_catalogues(const TomlValue& study, const std::string& file_name,
                                        const std::function<SourceText(const ConfigValue& file)>& find);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kNumbers = "a table of numbers, { name = number, ... }";
 
-/// "a table { default = .., min = .., ... }"
+/// Text that lists the keys of a table, for messages: "a table { default = .., min = .., ... }".
 std::string table_expectation(const TableSpec& spec) {
   if (!spec.header.empty()) return (spec.header.starts_with("[[") ? "tables " : "a table ") + spec.header;
   constexpr std::size_t kMost = 5;

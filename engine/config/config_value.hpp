@@ -30,7 +30,8 @@ std::string range_text(std::string_view noun, double lower, double upper, std::s
 /// What a value has to be, for messages: "an integer in [1, 200]", "one of box, sphere, capsule".
 std::string expectation(const OptionSpec& spec);
 
-/// Refers to a TomlValue that must outlive it. Every function that reads throws ConfigError.
+/// A value of a TOML file with its position and its description. It refers to a TomlValue that must outlive it. Every
+/// function that reads throws ConfigError.
 class ConfigValue {
  public:
   /// @param path  dotted key path: "variables.a.min"; tables of a list count from 1: "constraint[2].bound"
@@ -61,7 +62,7 @@ class ConfigValue {
   std::int64_t integer(double lower, double upper) const;
   bool flag() const;
   const std::string& text(std::string_view expected) const;
-  /// A number, an integer or text.
+  /// This value as a number, an integer or a text, whichever it is.
   Setting setting() const;
   /// Text that is one of `choices`.
   const std::string& word(const std::vector<std::string>& choices) const;
@@ -116,7 +117,7 @@ class ConfigValue {
 
   const TomlValue& toml() const { return *value_; }
   SourceLocation place() const { return {file_, value_->line, path_}; }
-  /// "line 12", for a message that refers to another location.
+  /// Text such as "line 12" for a message that refers to the position of this value.
   std::string line() const { return "line " + std::to_string(value_->line); }
   /// An error that names the value as written, what is expected, and the nearest known name.
   ConfigError error(std::string_view expected, std::string_view nearest = {}) const;

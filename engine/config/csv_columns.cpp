@@ -40,7 +40,7 @@ class Rows {
         if (text_[at_] == '"' && (at_ + 1 >= text_.size() || text_[++at_] != '"')) break;
         cell += text_[at_];
       }
-      if (at_ + 1 == text_.size() && text_[at_] == '"') ++at_;  // a closing quote at the end of the text
+      if (at_ + 1 == text_.size() && text_[at_] == '"') ++at_;  // the closing quote at the end of the text
     }
     while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n') cell += text_[at_++];
     while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r')) cell.pop_back();
@@ -77,7 +77,7 @@ CsvColumns read_csv_columns(const std::string& text, const std::string& file_nam
   CsvColumns found;
   found.values.resize(known.size());
   std::vector<Header> headers;
-  // for each column of the file, the index of its name in `known`; std::nullopt: unknown
+  // For each column of the file, the index of its name in `known`; std::nullopt: the name is unknown.
   std::vector<std::optional<std::size_t>> targets;
   for (const std::string& cell : cells) {
     const Header& header = headers.emplace_back(header_of(cell));
@@ -104,7 +104,7 @@ CsvColumns read_csv_columns(const std::string& text, const std::string& file_nam
       const Assignable& target = known[*targets[i]];
       const std::string& unit = headers[i].unit;
       auto value = parse_quantity(cells[i], target.unit);
-      if (!unit.empty() && unit != target.unit)  // a number without a unit is in the unit of the column
+      if (!unit.empty() && unit != target.unit)  // a cell without a unit is in the unit of its column
         value = parse_quantity(cells[i] + " " + unit, target.unit);
       if (!value)
         throw ConfigError(

@@ -1,4 +1,4 @@
-// Reading of tables of comma-separated values: columns of numbers by their names.
+// Reads tables of comma-separated values: columns of numbers, identified by their names.
 #pragma once
 
 #include <optional>

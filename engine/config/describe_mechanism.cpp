@@ -81,7 +81,7 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
   out << "  mobility: " << mobility_text(mechanism, parameters, *nominal, rank) << '\n';
 }
 
-/// Why the masses of the default design are invalid; "" if they are valid.
+/// The reason why the masses of the default design are invalid; "" if they are valid.
 std::string why_no_masses(const Mechanism& mechanism) {
   std::vector<double> nominal;
   for (const Parameter& p : mechanism.info().parameters) nominal.push_back(p.nominal);

@@ -23,7 +23,8 @@ constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRST
 std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
   const auto given = table.find("name");
   std::string name = given ? given->text("text") : type;
-  if (!given) std::ranges::replace(name, ' ', '-');  // type is the name of a [[design]] of the mechanism file
+  // A type that is the name of a [[design]] of the mechanism file can contain blanks.
+  if (!given) std::ranges::replace(name, ' ', '-');
   if (name.empty() || name.find_first_not_of(kLetters) != std::string::npos)
     throw given->error("a name of letters, digits, '-', '_' and '.'");
   if (find_named(before, name))
@@ -114,7 +115,8 @@ std::optional<SampledValue> sampled_value(const ConfigValue& table, const Object
   return SampledValue{Statistic::quantile, *probability};
 }
 
-/// ", mean of built machines": the statistic of a quantity, for a role; "" if it has none, or is a yield.
+/// Text that describes the statistic of a quantity, such as ", mean of built machines", for NamedQuantity's role in
+/// listings; "" if the quantity has no statistic, or is a yield.
 std::string statistic_text(const NamedQuantity& q) {
   using Statistic = SampledValue::Statistic;
   if (!q.sampled || q.sampled->is_yield()) return "";
@@ -227,7 +229,8 @@ void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& ent
       .push_back(std::move(made));
 }
 
-/// "motion-cycle" for a motion called cycle; characters that are invalid in names of constraints become dashes.
+/// Name of the implied constraint: "motion-cycle" for a motion called cycle; characters that are invalid in names of
+/// constraints become dashes.
 std::string implied_name(const std::string& motion, const std::vector<StudyEntry>& before) {
   std::string name = std::string(kMotionConstraint) + "-" + motion;
   for (char& letter : name)
@@ -242,7 +245,7 @@ void add_motion_constraints(StudyDraft& draft) {
   const ConstraintEntry* const entry = find_named(draft.catalogues.constraints, kMotionConstraint);
   if (!entry || draft.implied == ImpliedConstraints::left_out) return;
   struct Use {
-    std::int64_t samples = 0;  ///< maximum over the entries; 0: none of them has samples
+    std::int64_t samples = 0;  ///< maximum number of samples over the entries; 0: none of the entries has samples
     std::vector<std::string> names;
   };
   Study& study = draft.study;
@@ -305,7 +308,8 @@ void read_pose_constraint(const ConfigValue& value, const ConstraintEntry& entry
 /// Reads either the pose-level [[constraint]]s or all others, including those whose type is an objective.
 void read_constraints(const ConfigValue& root, StudyDraft& draft, bool pose_level) {
   std::vector<ConstraintEntry> entries = draft.catalogues.constraints;
-  for (const DesignMarginInfo& test : design_tests_of(*draft.parts.mechanism))  // defined by the mechanism file
+  // Every [[design]] of the mechanism file is a type of constraint, too.
+  for (const DesignMarginInfo& test : design_tests_of(*draft.parts.mechanism))
     if (!find_named(entries, test.name)) entries.push_back(design_test(test.name, test.meaning));
   std::vector<std::string> names = names_of(entries);
   for (const auto& name : names_of(draft.catalogues.objectives))

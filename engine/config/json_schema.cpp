@@ -16,7 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kQuantity = "^[ ]*[-+]?[0-9.]";  // how text with a unit begins: "200 mm"
+// Regular expression for the beginning of text with a unit, such as "200 mm".
+constexpr const char* kQuantity = "^[ ]*[-+]?[0-9.]";
 
 Json schema_of(const OptionSpec& spec);
 Json schema_of(const TableSpec& table);
@@ -199,7 +200,7 @@ class StudyTables {
 
   void replace(const std::string& name, const std::string& choice, std::vector<TableVariant> variants) {
     TableSpec& table = tables_.emplace_back(*key(name).parts[0].table);
-    if (name == "constraint") table.keys = pose_constraint_keys().keys;  // all other keys are in the variants
+    if (name == "constraint") table.keys = pose_constraint_keys().keys;  // all other keys belong to the variants
     table.choice = choice;
     table.variants = std::move(variants);
     key(name).parts[0].table = &table;
@@ -235,7 +236,7 @@ class StudyTables {
     return variant;
   }
 
-  /// Inserts the keys that only some constraints have before the other keys.
+  /// Inserts, before the other keys, the keys that only some constraints have.
   static void add_keys(const TableSpec& table, TableVariant& variant) {
     std::vector<OptionSpec> keys;
     for (const OptionSpec& key : table.keys)

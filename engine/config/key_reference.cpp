@@ -74,10 +74,10 @@ std::string sentence(const std::string& text) {
   return static_cast<char>(std::toupper(text[0])) + text.substr(1) + ".\n\n";
 }
 
-/// Adds the keys of all variants; keys that several variants have in common are listed once.
+/// Adds the keys of all variants of a table; keys that several variants have in common are listed once.
 void add_variants(const TableSpec& table, std::string& text) {
   std::vector<std::pair<std::vector<std::string>, std::string>>
-      groups;  // words of variants, and the rows of their keys
+      groups;  // for each group of variants, their words and the rows of their keys
   const auto add = [&groups](const std::vector<std::string>& words) -> std::string& {
     for (auto& [known, rows] : groups)
       if (known == words) return rows;

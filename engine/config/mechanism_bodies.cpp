@@ -1,4 +1,4 @@
-// Reads the masses of a mechanism file: parts of limbs, links, the platform, [[body]].
+// Reads the masses of a mechanism file: those of parts of limbs, of links, of the platform, and of [[body]] tables.
 //
 // Parts of limbs and links are thin: they rotate with the line between their ends, but do not spin about it. Their
 // inertia is therefore a single number: the moment of inertia about an axis through the centre of mass, normal to that

@@ -22,7 +22,7 @@ inline std::array<expression::Node, 3> nodes(const limbs::Vector3& v) {
   return {v[0].node(), v[1].node(), v[2].node()};
 }
 
-/// Axis k of a rotated frame, 0 to 2.
+/// Direction of axis k (0 to 2) of a frame with the rotation matrix R.
 inline limbs::Vector3 column(const limbs::Rotation& R, std::size_t k) { return {R[0][k], R[1][k], R[2][k]}; }
 
 /// Names of the frames that every mechanism has.
@@ -31,9 +31,10 @@ inline constexpr const char *kBaseFrame = "base", *kPlatformFrame = "platform";
 /// A motion of the platform along or about an axis of its moving frame.
 struct PlatformMotion {
   std::string name;
-  std::size_t axis;  ///< 0 to 2
+  std::size_t axis;  ///< index of the axis: 0 for x, 1 for y, 2 for z
   bool rotates;
-  /// Index among the coordinates of the pose; std::nullopt: it follows from them.
+  /// Index of the motion's coordinate among the coordinates of the pose; std::nullopt: the motion is a function of
+  /// these coordinates.
   std::optional<std::size_t> coordinate;
   const char* unit() const { return rotates ? "rad" : "m"; }
 };
@@ -42,10 +43,10 @@ struct PlatformMotion {
 struct PlatformTurn {
   limbs::Vector3 axis;  ///< unit vector in the base frame
   limbs::Term angle;
-  std::size_t index;  ///< 0 to 2: axis in the platform's frame before this rotation
+  std::size_t index;  ///< index of the axis of rotation (0 to 2) in the platform's frame before this rotation
 };
 
-/// The base, the platform or a [[frame]].
+/// A frame to which tables of a mechanism file refer by its name: the base, the platform, or a [[frame]].
 struct NamedFrame {
   std::string name;
   expression::Frame at;  ///< position and rotation in the base frame
@@ -113,8 +114,8 @@ struct NamedLimb {
   std::optional<std::array<limbs::Vector3, 2>> universal = {};
 };
 
-/// A limb whose table has the key `across`, a vector `normal` to the plane in which the limb moves: the component of B
-/// - A along it must be the same at every pose.
+/// A limb whose table has the key `across`, a vector `normal` to the plane in which the limb moves. The component of
+/// the vector from A to B along `normal` must be the same at every pose.
 struct LimbInPlane {
   ConfigValue across;
   limbs::Vector3 A, B, normal;
@@ -144,11 +145,12 @@ struct MechanismDraft {
   /// The rotations that `turn` does not contain yet, because they follow a dependent angle that has not been read.
   std::vector<PlatformMotion> waiting_rotations;
   std::vector<PlatformTurn> turns;           ///< the rotations that `turn` contains
-  std::map<std::string, NamedFrame> frames;  ///< all frames, by name
+  std::map<std::string, NamedFrame> frames;  ///< all frames of the mechanism, by name
   std::vector<std::string> frame_names;      ///< "base", "platform", and those of the [[frame]] tables
   std::vector<NamedLimb> limbs;
   std::vector<LimbInPlane> in_planes;
-  /// For each limb, the ranges of the platform's x, y and z within its reach; std::nullopt: unknown.
+  /// For each limb, the ranges of the platform's x, y and z that are within the reach of the limb; std::nullopt:
+  /// unknown.
   std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;
   std::vector<SignChoice> sign_choices;  ///< the signs of the working modes, in the order of the graph's inputs
 
@@ -188,7 +190,7 @@ void refuse_idle_parameters(const MechanismDraft& draft);
 
 /// Rotation about a coordinate axis. The elements for numbers such as 90 deg are exactly 0 and 1.
 limbs::Rotation rotation_by(std::size_t axis, const limbs::Term& angle);
-/// Whether a node depends on the coordinates.
+/// Returns true if a node depends on the coordinates of the pose.
 bool depends_on_pose(const expression::Graph& graph, expression::Node node);
 /// Reads the coordinates of the platform. Those of the key `follows` are read when a formula uses them.
 void read_coordinates(const ConfigValue& platform, MechanismDraft& draft);

@@ -28,7 +28,7 @@ std::optional<NamedLimb::Section> read_section(const ConfigValue& table, const s
   const Term outer = positive("outer", "m"), inner = section->has("inner") ? positive("inner", "m") : draft.zero();
   draft.model.required.push_back({key + ": outer - inner", "m", (outer - inner).node()});
   const Term young = positive("young", "Pa");
-  constexpr double kPoisson = 0.3;  // Poisson's ratio, approximately that of steel and aluminium
+  constexpr double kPoisson = 0.3;  // Poisson's ratio of all materials, approximately that of steel and aluminium
   const Term shear = shear_modulus ? positive("shear", "Pa") : young / (2 * (1 + kPoisson));
   const Term area = (outer * outer - inner * inner) * (std::numbers::pi / 4),
              moment = (to_the_fourth(outer) - to_the_fourth(inner)) * (std::numbers::pi / 64);

@@ -34,7 +34,7 @@ void read_names(const ConfigValue& root, MechanismDraft& draft) {
   draft.model.info.source = text_of(table, "source");
 }
 
-/// The SI unit of a parameter, inferred from its default value: "m" for "200 mm".
+/// The SI unit of a parameter, derived from its default value: for example "m" if the value is "200 mm".
 std::string unit_of(const ConfigValue& table) {
   if (const auto unit = table.find("unit")) return si_unit(*unit);
   const ConfigValue value = table.at("default", "the default, a number or text with a unit: \"200 mm\"");
@@ -159,7 +159,7 @@ void read_platform(const ConfigValue& platform, MechanismDraft& draft) {
   if (const auto radius = platform.find("characteristic_radius"))
     model.radius = draft.scope.of_design(*radius, "m", "characteristic_radius").node();
   if (!mixes_units(model.info.coordinates) && model.info.characteristic_length.empty())
-    model.info.characteristic_length = "1";  // all coordinates have one unit: no scaling is needed
+    model.info.characteristic_length = "1";  // all coordinates have the same unit, so that no scaling is needed
   if (const auto size = platform.find_table("size")) {
     const std::string unit = si_unit(size->at("unit", "the size's unit: \"m^3\""));
     const ConfigValue formula = size->at("formula", "a formula of parameters");

@@ -19,7 +19,7 @@ class ConfigValue;
 struct LimbParameter {
   std::string limb, parameter;
   SourceLocation place = {};  ///< position of the name in the input file, for messages
-  bool may_be_idle = false;   ///< it is no error if nothing depends on it
+  bool may_be_idle = false;   ///< true: the name is accepted even if no formula depends on the parameter
 
   std::string name() const { return limb + "." + parameter; }
 };

@@ -48,7 +48,7 @@ void add_rotation(const PlatformMotion& motion, const Term& angle, MechanismDraf
   draft.turn = draft.turn * limbs::rotation_about(motion.axis, sin(angle), cos(angle));
 }
 
-/// The value of a dependent coordinate. @param user  the value that refers to it
+/// The value of a dependent coordinate. @param user  value of the file whose formula refers to the coordinate
 Term dependent(const PlatformMotion& motion, const ConfigValue& user, MechanismDraft& draft) {
   return std::get<Term>(draft.scope.value(motion.name, user));
 }
@@ -79,7 +79,8 @@ const NamedFrame& platform_frame(const ConfigValue& platform, MechanismDraft& dr
   return draft.frames.emplace(kPlatformFrame, std::move(frame)).first->second;
 }
 
-/// A list of three angles about x, y and z, or a formula whose value is a rotation.
+/// A rotation in a mechanism file, given by a list of three angles about x, y and z, or by a formula whose value is a
+/// rotation.
 struct RelativeRotation {
   Rotation R;
   std::optional<std::array<Term, 3>> angles;

@@ -29,7 +29,7 @@ using generic::BodyNodes, generic::JointNodes, generic::SolidNodes;
 using limbs::Term, limbs::Vector3;
 using Nodes = std::array<expression::Node, 3>;
 
-/// Exception with one sentence: the mechanism file does not describe all joints.
+/// Exception with one sentence, thrown if the mechanism file does not describe all joints.
 struct IncompleteDescription {
   std::string why;
 };
@@ -172,7 +172,7 @@ class JointReader {
   }
 
   void add_limb(const NamedLimb& limb) {
-    if (limb.drive == "formula") return;  // described by [[joint]] instead
+    if (limb.drive == "formula") return;  // the joints of this limb are described by [[joint]] tables instead
     if (limb.parts.size() == 1)
       throw IncompleteDescription{"limb " + limb.name +
                                   " has neither `rod` nor `links` that connect it to the platform"};
@@ -204,7 +204,8 @@ class JointReader {
       for (std::size_t i = 0; i < model_.bodies.size(); ++i)
         if (model_.bodies[i].name == "slider of " + limb.name) drive.slide = i;
 
-    // index of the crank, of the cylinder or of the first of two links; std::nullopt: the limb has none of them
+    // Index of the crank, of the cylinder, or of the first of two links, among the solids; std::nullopt: the limb has
+    // none of these.
     std::optional<std::size_t> inner;
     if (telescope || has_links || limb.drive == "crank") inner = add_part(limb, first);
     if (telescope) {
@@ -241,7 +242,7 @@ class JointReader {
       } else {
         joints_.push_back(limb_joint(limb, limb.name + ".S" + number, near, outer, {}, last.line));
         joints_.back().drive = drive;
-        drive.slide = {};  // of two rods, only the joint of the first one carries the mass of the slider
+        drive.slide = {};  // of a pair of rods, only the joint of the first rod carries the mass of the slider
       }
       make_universal(limb, far - near, outer, false);
       if (const auto& section = limb.rod_section) solids_[outer].beam = held_beam(*section, near, far, true);
@@ -320,7 +321,7 @@ class JointReader {
   void assign_masses() {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyNodes& body = model_.bodies[i];
-      // The force of the limb's drive already includes the acceleration of this mass.
+      // The force of the limb's drive already includes the force that accelerates the slider.
       if (body.name.starts_with("slider of ") && is_of_limb(body.name)) continue;
       std::string owner = body.part_of.empty() ? body.name : body.part_of;
       for (const NamedLimb& limb : draft_.limbs)

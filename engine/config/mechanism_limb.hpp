@@ -11,22 +11,23 @@
 
 namespace pkm {
 
-/// One of the copies that a [[limb]] describes; if it has no key `copies`, the limb itself.
+/// One of the copies of a limb that the key `copies` of a [[limb]] defines; without this key, the limb itself.
 struct LimbCopy {
   const ConfigValue& table;
   MechanismDraft& draft;
   std::string drive;
-  std::string group;                  ///< name in the file: "arm"
-  std::string name;                   ///< name of this copy: "arm2"
+  std::string group;                  ///< name of the [[limb]] in the file, for example "arm"
+  std::string name;                   ///< name of this copy, for example "arm2"
   limbs::Rotation turn;               ///< rotation that maps the geometry in the file to this copy
-  const NamedFrame &base, &platform;  ///< the frames of the limb's ends
-  ConfigValue ends;  ///< table that contains its `base` and `platform`: that of the limb, or one of `copies`
+  const NamedFrame &base, &platform;  ///< frames to which the two ends of the limb are attached
+  ConfigValue ends;  ///< table that contains the limb's keys `base` and `platform`: the table of the limb, or an
+                     ///< element of `copies`
 
   limbs::Term length(const char* key, const char* expected) const;
   /// Reads a direction and rotates it with the copy.
   /// @param on_platform  true: it is given in the frame `platform`; false: in the frame `base`
   limbs::Vector3 direction(const ConfigValue& value, bool on_platform = false) const;
-  /// Whether the base of the limb moves.
+  /// Returns true if the base of the limb moves relative to the base frame of the mechanism.
   bool moves() const { return base.body != kBaseFrame; }
   /// Reads the minimum and the maximum of the key `range`, which must be present.
   std::array<limbs::Term, 2> range(const std::string& unit) const;

@@ -30,7 +30,7 @@ std::vector<LimbPart> read_parts(const LimbCopy& copy, const Ends& at, const Dri
     const Vector3 C = limb.S + limb.arm->arm;
     list.push_back({names[names.size() - 2], limb.S, C, of_arm, limb.arm->arm});
     list.push_back({names.back(), C, at.B, of_rod, limb.arm->rod});
-    if (copy.moves()) return list;  // the rates of arms assume an axis that does not move
+    if (copy.moves()) return list;  // the formulas for the rates of arms assume an axis that does not move
     std::vector<generic::ArmNodes>& arms = copy.draft.model.arms;
     list[list.size() - 2].on_arm = LimbPart::OnArm{arms.size(), limb.S, of_arm, true};
     list.back().on_arm = LimbPart::OnArm{arms.size(), limb.S, of_arm, false};

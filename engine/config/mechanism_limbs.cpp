@@ -74,7 +74,7 @@ std::vector<Rotation> turns_of(const ConfigValue& table, MechanismDraft& draft) 
 
 /// The frames in which the copies of a limb have one of their ends.
 /// @param key    "base_in" or "platform_in": the name of a frame, or a list of names, one for each copy
-/// @param usual  the frame if the key is absent
+/// @param usual  the frame that is used if the key is absent
 std::vector<const NamedFrame*> frames_of(const ConfigValue& table, const char* key, const char* usual,
                                          std::size_t copies, const MechanismDraft& draft) {
   const auto given = table.find(key);

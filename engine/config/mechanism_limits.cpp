@@ -1,5 +1,5 @@
-// Reads [[limit]], thresholds that a study can set; [[margin]], constraints on poses; and [[design]], constraints on
-// designs.
+// Reads the tables [[limit]] (thresholds that a study can set), [[margin]] (constraints on poses) and [[design]]
+// (constraints on designs).
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"

@@ -1,4 +1,5 @@
-// Reads [[link]], links in addition to those of the limbs, and adds the limit on the clearance of all links.
+// Reads the tables [[link]], which define links in addition to those of the limbs, and adds the limit on the clearance
+// of all links.
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"

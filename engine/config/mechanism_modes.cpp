@@ -1,4 +1,5 @@
-// Reads [modes]: signs that formulas use, and which together with the branches of the limbs select the working modes.
+// Reads the table [modes]: signs that formulas use and that, together with the branches of the limbs, select the
+// working mode.
 
 #include <algorithm>
 

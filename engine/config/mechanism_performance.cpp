@@ -109,7 +109,7 @@ class Performance {
       add(generic::velocity_quantities(model_, at_));
   }
 
-  // Accuracy of the platform.
+  // The following functions add the quantities of the platform's accuracy.
 
   /// The table [accuracy] of the study or, if it has none, of the mechanism file; std::nullopt if neither has one.
   std::optional<ConfigValue> accuracy_table() const {
@@ -200,7 +200,7 @@ class Performance {
     return model_.term(expression::derivative(model_.graph, model_.joints[joint], input));
   }
 
-  // Stiffness of the platform.
+  // The following functions add the quantities of the platform's stiffness.
 
   /// For each joint, the value of a key in its [[drive_train]] table of the study; std::nullopt if it is absent.
   std::vector<std::optional<ConfigValue>> by_joint(const std::string& key) const {
@@ -221,7 +221,7 @@ class Performance {
     std::vector<generic::LimbSpring> springs;
     bool is_rigid = true;
     for (std::size_t joint = 0; joint < joints_; ++joint) {
-      if (given[joint])  // the study sets it, which takes precedence over the mechanism file
+      if (given[joint])  // the value in the study takes precedence over the value in the mechanism file
         draft_.drive_stiffness[joint] =
             draft_.scope.positive(*given[joint], model_.info.joints[joint].turns() ? "N m/rad" : "N/m", "stiffness");
       springs.push_back(spring_of(joint, draft_.drive_stiffness[joint]));

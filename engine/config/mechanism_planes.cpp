@@ -82,7 +82,7 @@ class RandomPoses {
 }  // namespace
 
 void refuse_changing_planes(MechanismDraft& draft) {
-  std::vector<Node> nodes;  // two nodes per limb: the component of B - A along the normal, and |B - A|^2
+  std::vector<Node> nodes;  // two nodes for each limb: the component of B - A along the normal, and |B - A|^2
   for (const LimbInPlane& limb : draft.in_planes) {
     const limbs::Vector3 v = limb.B - limb.A;
     nodes.push_back(dot(v, limb.normal).node());
@@ -95,7 +95,7 @@ void refuse_changing_planes(MechanismDraft& draft) {
     for (std::uint32_t k = 0; k < kPoses; ++k) {
       const std::vector<double> values = poses.next(nodes);
       for (std::size_t i = 0; i < offsets.size(); ++i) {
-        // The limb cannot be assembled at this pose.
+        // Skip this pose, because the limb cannot be assembled at it.
         if (!std::isfinite(values[2 * i]) || !std::isfinite(values[2 * i + 1])) continue;
         offsets[i].add(values[2 * i]);
         sizes[i].add(std::sqrt(values[2 * i + 1]));

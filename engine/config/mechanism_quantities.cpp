@@ -13,11 +13,13 @@ namespace {
 using expression::Node;
 using generic::Inputs;
 
-/// Names that a quantity must not have, because the output, fields of workspaces or formulas of studies use them.
+/// Names that a quantity must not have, because the program's output, fields of workspaces or formulas of studies use
+/// these names.
 const std::vector<std::string> kTaken = {"conditioning", "dci",    "dci_worst", "inertia_condition", "volume",
                                          "clearance",    "det_Jq", "det_G",     "feasible",          "margin"};
 
-constexpr double kNoLimit = 1e30;  // threshold, in any unit, that no value of a quantity violates
+// Threshold that stands for "no limit": no value of a quantity violates it, whatever its unit.
+constexpr double kNoLimit = 1e30;
 
 /// A coordinate or an input of [inputs], with its value, rate and acceleration as inputs of the expression graph.
 struct Moving {

@@ -180,7 +180,7 @@ double MechanismScope::at_default(const Term& term) const {
   for (std::size_t i = 0; i < model_.info.parameters.size(); ++i) inputs[i] = model_.info.parameters[i].nominal;
   for (std::size_t i = 0; i < model_.inputs.limits; ++i)
     inputs[model_.inputs.limit(i)] = model_.info.limits[i].inactive;
-  // an arbitrary pose without special symmetry
+  // Use an arbitrary pose without special symmetry.
   for (std::size_t i = 0; i < model_.info.coordinates.size(); ++i)
     inputs[model_.inputs.coordinate(i)] = 0.37 + 0.11 * static_cast<double>(i);
   program.run_all<double>(inputs, registers);

@@ -28,8 +28,8 @@ class MechanismScope {
   /// Adds a name whose value is computed when a formula uses it first, so that the formulas that define it may use
   /// names that are added later. resolve() computes the values that are still missing.
   void add_deferred(const ConfigValue& at, const std::string& name, std::function<Value()> value);
-  /// Adds a deferred name that every file may use, and may also give to something of its own: then it has this other
-  /// meaning.
+  /// Adds a name with a predefined value, which is computed at its first use. If a mechanism file defines the same
+  /// name, the definition of the file replaces the predefined value.
   void add_predefined(const std::string& name, std::function<Value()> value);
   /// The value of a name. @param user  the value that refers to it; refused if the name depends on itself
   const Value& value(const std::string& name, const ConfigValue& user) { return value_of(*names_.find(name), user); }
@@ -104,8 +104,9 @@ class MechanismScope {
     std::string name;
     std::function<Value()> compute;  ///< empty while the value is being computed
   };
-  std::map<std::size_t, Deferred> deferred_;  ///< by the index of the name
-  std::vector<std::string> origins_;          ///< "parameters.a (line 7)"; "": predefined
+  std::map<std::size_t, Deferred> deferred_;  ///< names without a value so far, by their index in names_
+  std::vector<std::string> origins_;          ///< for each name, the place of its definition, such as "parameters.a
+                                              ///< (line 7)"; "": the name is predefined
   std::vector<PartialOperation> partial_operations_;
   std::unordered_set<expression::Node> visited_;
   bool motion_allowed_ = false;

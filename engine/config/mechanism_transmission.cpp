@@ -35,7 +35,8 @@ LimbForce single_force_of(const NamedLimb& limb) {
   const Term one(B[0].graph(), 1.0);
   if (limb.drive == "slider" && !limb.has_rod) return {unit(*limb.axis), one, B};
   Vector3 rod = B - (limb.drive == "telescope" ? A : C);
-  // axes of revolute joints are parallel: no force along them is transmitted, so the force is normal to them
+  // The limb has revolute joints with parallel axes and cannot transmit a force along these axes, so that its force is
+  // normal to them.
   if (limb.revolute) {
     const Vector3 n = unit(*limb.revolute);
     rod = rod - n * dot(rod, n);
@@ -89,7 +90,7 @@ void add_transmission(const ConfigValue& root, const ConfigValue* study, Mechani
   expression::Graph& graph = model.graph;
   const std::size_t n = draft.limbs.size();
   std::vector<LimbForce> all;
-  // for each limb, the velocity of B for a unit rate of each coordinate
+  // For each limb, the velocity of its point B for a unit rate of each coordinate.
   std::vector<std::vector<Vector3>> velocities(n);
   TermMatrix powers(graph, n, n);
   for (std::size_t i = 0; i < n; ++i) {

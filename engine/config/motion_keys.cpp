@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-/// Copies of descriptions of keys in which numbers may be formulas of parameters (motion_formulas.hpp).
+/// Copies descriptions of keys such that their numbers may be formulas of parameters (motion_formulas.hpp).
 std::vector<OptionSpec> with_formulas(std::vector<OptionSpec> keys) {
   for (OptionSpec& key : keys)
     if (key.kind == OptionKind::number) key.kind = OptionKind::formula;

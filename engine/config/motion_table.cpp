@@ -17,7 +17,7 @@ namespace {
 using Coordinates = std::vector<AxisInfo>;
 using Names = std::vector<std::string>;
 
-constexpr double kLongestMotion = 1e9;  // [s], about 30 years
+constexpr double kLongestMotion = 1e9;  // maximum duration of a motion [s], about 30 years
 
 TimeLaw law_of(const ConfigValue& table) {
   const std::string law = table.word_at("law");
@@ -44,7 +44,8 @@ struct Pace {
   PeakRates most = {};
 };
 
-/// The pace for the move to a point: that in the table of the point, otherwise `general`, that of the whole motion.
+/// The pace of the move to a point: it is given by the table of the point or, if this table does not give it, by
+/// `general`, the pace of the whole motion.
 Pace pace_of(const ConfigValue& table, const Pace& general) {
   const auto peak = [&table](const char* key) { return table.find_number(key).value_or(kUnbounded); };
   const Pace pace{table.find_number("time"),
@@ -176,11 +177,11 @@ constexpr MotionKind kMotionKinds[] = {{"points", read_points},
                                        {"oscillation", read_oscillation},
                                        {"formulas", read_formulas}};
 
-/// The table of a motion, read by its description.
+/// The table of a motion, checked by the description of its keys.
 ConfigValue motion_described_by(const TableSpec& spec, const ConfigValue& value, const MotionNames& names) {
   const bool has_points = value.expect_table().choice("type", names_of(kMotionKinds)) == "points";
-  Names keys =
-      has_points ? Names() : names_of(names.coordinates);  // with `points`, the coordinates are keys of each point
+  // If the motion has `points`, the coordinates are keys of each point.
+  Names keys = has_points ? Names() : names_of(names.coordinates);
   for (const InputInfo& input : names.inputs) keys.push_back(input.name);
   return value.described_by(spec, named_keys(spec, keys));
 }
@@ -210,7 +211,7 @@ std::shared_ptr<const Motion> read_motion(const TableSpec& spec, const MotionFor
   return read_motion(motion_described_by(spec, ConfigValue(table, place.file, place.key), names), names);
 }
 
-/// The motion of each design, which the formulas of a table give.
+/// Function that returns the motion of a design, for a table whose values are formulas of parameters.
 std::function<std::shared_ptr<const Motion>(std::span<const double>)> motion_of_designs(const std::string& name,
                                                                                         const MotionFormulas& formulas,
                                                                                         const SourceLocation& place,
@@ -238,7 +239,7 @@ std::shared_ptr<const Motion> read_motion_toml(const std::string& text, const st
     throw ConfigError({file_name, 0, ""}, "an empty file",
                       "a motion in TOML, with type = one of " + join(names_of(kMotionKinds)));
   const ConfigValue root(document, file_name, "");
-  motion_described_by(motion_file_keys(), root, names);  // refuses unknown keys
+  motion_described_by(motion_file_keys(), root, names);  // throws ConfigError for unknown keys
   const MotionFormulas formulas(root, names.parameters, names_of(names.inputs));
   return read_motion(motion_file_keys(), formulas, {file_name, 0, ""}, names, names.values);
 }

@@ -11,8 +11,8 @@
 
 namespace pkm {
 
-/// The names that a motion of a mechanism may use: the coordinates, the inputs, which may be formulas of the time, and
-/// the parameters, of which all values may be formulas.
+/// The names that a motion of a mechanism may use: coordinates and inputs, whose values may be formulas of the time,
+/// and parameters, which may occur in the formula of any value.
 struct MotionNames {
   std::vector<AxisInfo> coordinates;
   std::vector<InputInfo> inputs = {};

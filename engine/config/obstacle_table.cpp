@@ -8,7 +8,7 @@
 namespace pkm {
 namespace {
 
-/// Three numbers [x, y, z].
+/// Reads a list of three numbers [x, y, z].
 Point3<double> read_triple(const ConfigValue& table, const std::string& key, const std::string& expected) {
   const ConfigValue list = table.at(key, expected);
   const std::vector<ConfigValue> elements = list.elements(expected);

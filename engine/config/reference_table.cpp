@@ -5,7 +5,7 @@
 namespace pkm {
 namespace {
 
-/// Unit of the objective or output with this name; if both exist, that of the objective.
+/// Unit of the objective or output with this name; if both exist, the unit of the objective.
 std::string unit_of(const std::string& name, const ProblemParts& parts) {
   for (const auto* list : {&parts.objectives, &parts.reports})
     for (const auto& quantity : *list)

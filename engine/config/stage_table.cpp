@@ -7,7 +7,7 @@
 namespace pkm {
 namespace {
 
-/// Why the optimiser does not support the problem; empty if it does.
+/// The reason why an optimiser does not support the problem; empty if it supports the problem.
 Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, const Problem& problem,
                        const std::vector<Choice>& choices) {
   const auto& objectives = problem.objectives();
@@ -41,7 +41,7 @@ Unsupported refusal_of(const OptimiserEntry& entry, const Options& options, cons
   return {};
 }
 
-/// The default of an option, given the other options.
+/// The default value of an option, which may depend on the values of other options.
 std::optional<OptionValue> default_of(const std::string& name, const OptimiserEntry& entry, const Options& options,
                                       const DesignSpace& space) {
   Options others;
@@ -72,7 +72,7 @@ Stage read_stage(const ConfigValue& each, const std::vector<OptimiserEntry>& opt
                  bool is_first, const std::vector<Choice>& choices = {}) {
   const OptimiserEntry& entry = *find_named(optimisers, each.choice("optimiser", names_of(optimisers)));
   const ConfigValue table = each.table(entry.options);
-  // The unit of the objective; with several objectives there is no common unit.
+  // Use the unit of the objective; several objectives have no common unit.
   const auto& objectives = problem.objectives();
   const DesignSpace& space = problem.space();
   auto specs = with_entry_unit(entry.options, objectives.size() == 1 ? objectives.front().unit : "1");

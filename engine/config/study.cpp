@@ -18,7 +18,8 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kMaxCellsOfCheck = 1'000'000;  // larger grids are not evaluated when a study is read
+// Maximum number of cells of a workspace that is evaluated when a study is read.
+constexpr std::int64_t kMaxCellsOfCheck = 1'000'000;
 
 std::string stem(const std::string& file_name) { return std::filesystem::path(file_name).stem().string(); }
 
@@ -59,7 +60,7 @@ void warn_of_empty_workspace(Study& study) {
   const WorkspacePlan& plan = parts.plan;
   if (const VoxelOptions* const voxels = plan.voxels()) {
     std::int64_t cells = 1;
-    for (const std::int64_t n : voxels->cells) cells *= n;  // at most 2^28
+    for (const std::int64_t n : voxels->cells) cells *= n;  // the product is at most 2^28
     for (const FixedCoordinate& fixed : plan.fixed) cells *= std::max<std::int64_t>(1, fixed.cells);
     if (cells > kMaxCellsOfCheck) return;
   }
@@ -82,7 +83,7 @@ void warn_of_empty_workspace(Study& study) {
     if (limit.is_requested_by_outer_scope()) throw;
     return;
   } catch (const DesignError&) {
-    return;  // an invalid mass; reported when the design is evaluated
+    return;  // a mass is invalid; the error is reported when the design is evaluated
   }
   std::string where;
   for (const int coordinate : sweep_of(info, plan).fixed) {
@@ -137,7 +138,7 @@ struct StudySource {
   ImpliedConstraints implied = ImpliedConstraints::added;
 };
 
-/// Reads a study with the given row of every catalogue.
+/// Reads a study, with the values of the given row of each catalogue.
 Study read_rows(const StudySource& source, const Catalogues& catalogues, const std::vector<Catalogue>& choices,
                 const std::vector<std::size_t>& rows,
                 const std::shared_ptr<ExternalFunctions>& functions = std::make_shared<ExternalFunctions>()) {

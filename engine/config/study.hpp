@@ -23,7 +23,7 @@ namespace pkm {
 
 struct TomlValue;
 
-/// The names that a study may use.
+/// The catalogues that define the names of mechanisms, objectives, constraints and optimisers that a study may use.
 struct Catalogues {
   MechanismList mechanisms;
   std::vector<ObjectiveEntry> objectives;
@@ -33,7 +33,7 @@ struct Catalogues {
 
 struct Stage {
   std::shared_ptr<const OptimiserEntry> entry;
-  Options options;  ///< defaults filled in, also those that depend on the variables
+  Options options;  ///< values of the stage's options, with all default values, also those that depend on the variables
   std::shared_ptr<const Optimiser> optimiser;
   int line = 0;                   ///< line of its [[stage]] in the file
   std::vector<OptionSpec> specs;  ///< options of the entry with the units and defaults of this study
@@ -63,7 +63,7 @@ struct Study {
   std::vector<std::string> changes;       ///< changes by the command line, as in the text: "--set", "L0=2"
   std::optional<SourceText> description;  ///< the mechanism file, if [mechanism] names one
   std::vector<std::string> catalogues;    ///< files of the catalogues that [variables] name
-  std::string name;                       ///< default: the file's stem
+  std::string name;                       ///< name of the study; by default the name of its file without extension
   std::uint64_t seed = 1;
   std::optional<std::string> output;
   /// The design problem. Its parts() contain the mechanism, the parameters, the variables and the plan of the workspace
@@ -80,18 +80,19 @@ struct Study {
   std::vector<std::string> differences;    ///< differences between the records and the text of a study file
 
   std::vector<Reference> references;
-  std::vector<DesignMotion> motions;            ///< [[motion]]s
-  std::vector<std::string> unfollowed_motions;  ///< motions with follow = false
+  std::vector<DesignMotion> motions;            ///< motions of the study, from the tables [[motion]]
+  std::vector<std::string> unfollowed_motions;  ///< names of the motions with follow = false
 
-  std::optional<ToleranceModel> tolerances;  ///< [tolerance]
-  /// The problem of a machine as built, whose limbs have separate errors: that of the study without robust quantities
-  /// and yields. Null if the study has no [tolerance].
+  std::optional<ToleranceModel> tolerances;  ///< manufacturing tolerances, from the table [tolerance]
+  /// The problem of a built machine, whose limbs have separate errors; it has no robust quantities and yields. Null if
+  /// the study has no [tolerance].
   std::shared_ptr<const DesignProblem> machine;
 
   std::vector<StudyEntry> objectives, constraints, outputs;
   std::vector<std::string> limit_origins;  ///< for each limit of the mechanism, where its threshold is set; "": nowhere
 
-  /// `output`; by default, the stem of the study file + ".h5" in the current folder.
+  /// Name of the study file: the key `output`; by default the name of the study's TOML file with the extension ".h5",
+  /// in the current folder.
   std::string output_file() const;
 };
 
@@ -124,10 +125,10 @@ void require_stages(const Study& study, const Catalogues& catalogues);
 /// Whether a document is a mechanism file, which has a `name` in [mechanism] or a table [platform].
 bool describes_mechanism(const TomlValue& document);
 
-/// Contents of a file that is a study or a mechanism file.
+/// What a file contains: a mechanism or a study.
 using MechanismOrStudy = std::variant<std::shared_ptr<const Mechanism>, Study>;
-/// Reads the file at `path`, once. Throws ConfigError.
-/// @param changes  applied to a study
+/// Reads a mechanism file or a study at `path`. Throws ConfigError.
+/// @param changes  changes that are applied if the file is a study
 MechanismOrStudy load_mechanism_or_study(const std::string& path, const Catalogues& catalogues,
                                          const StudyChanges& changes = {});
 

@@ -23,7 +23,7 @@ struct StudyDraft {
   /// Parameters of single limbs that the study or the command line names.
   std::vector<LimbParameter> limb_parameters = {};
   std::vector<StudyChanges> changes = {};  ///< [[override]]s in the text of the study, then changes by the command line
-  std::vector<Catalogue> from_catalogues = {};  ///< catalogues of the variables that are choices from a catalogue
+  std::vector<Catalogue> from_catalogues = {};  ///< catalogues from which variables choose rows
   ImpliedConstraints implied = ImpliedConstraints::added;
   /// Parameters of single limbs that the machine as built has in addition, because of [tolerance].
   std::vector<LimbParameter> copies = {};

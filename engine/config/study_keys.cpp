@@ -184,7 +184,8 @@ const TableSpec& tolerance_table() {
   static const std::vector<OptionSpec> alternatives = {
       {.unit = kUnitOfEntry, .meaning = "largest error of a uniform distribution", .positive = true},
       {.kind = OptionKind::table, .table = &error}};
-  static const TableSpec error_of_limb = [] {  // error of a parameter in a single limb: without the key `copies`
+  // Table for the error of a parameter in a single limb, which has no key `copies`.
+  static const TableSpec error_of_limb = [] {
     TableSpec table = error;
     table.keys.pop_back();
     return table;
@@ -319,7 +320,7 @@ const TableSpec& checkpoint_table() {
 const TableSpec& final_table() {
   static const TableSpec spec = {
       .header = "[final]",
-      .meaning = "what follows the last stage",
+      .meaning = "rounding of the best design after the last stage",
       .keys = {{.name = "round",
                 .unit = kUnitOfEntry,
                 .meaning = "the best design is rounded to multiples of this step and evaluated again",

@@ -9,7 +9,7 @@
 namespace pkm {
 namespace {
 
-/// Names as a TOML list: ["x", "y"].
+/// Writes names as a TOML list, such as ["x", "y"].
 std::string quoted_list(const std::vector<std::string>& names) { return "[\"" + join(names, "\", \"") + "\"]"; }
 
 /// Reads the value of a fixed coordinate: "middle", "integrated" or a number.

@@ -19,7 +19,7 @@ namespace {
 using Kind = TomlValue::Kind;
 using Names = std::vector<std::string>;
 
-constexpr std::int64_t kCells = 16;  // cells of a region along each axis, if the task does not set them
+constexpr std::int64_t kCells = 16;  // number of cells of a region along each axis, if the task does not set it
 
 /// A copy of a table with only the entries for which keep(key) is true.
 template <class Keep>
@@ -210,7 +210,7 @@ class TaskOfRobot {
     return tables;
   }
 
-  /// The constraints of the robot's study that limit poses.
+  /// The constraints on poses in the robot's study.
   TomlValue pose_constraints() const {
     TomlValue list = list_value();
     if (const TomlValue* const all = robot_.study.find("constraint"))
@@ -225,7 +225,7 @@ class TaskOfRobot {
   const TaskRobot& robot_;
   const Names& coordinates_;
   const std::vector<ConstraintEntry>& constraints_;
-  std::vector<double> origin_;  ///< by coordinate
+  std::vector<double> origin_;  ///< position of the robot's base in the frame of the task, by coordinate
   Unsupported why_no_drives_;
 };
 
@@ -238,7 +238,7 @@ struct Line {
 std::vector<Line> lines_of(const Task& task) {
   using Keys = std::vector<std::array<std::string, 2>>;
   std::vector<Line> lines;
-  // Adds a line on a region or a motion: kind is "region" or "motion".
+  // Adds a line of the comparison for a region or a motion; kind is "region" or "motion".
   const auto add = [&lines](const std::string& kind, const std::string& group, const std::string& name,
                             const Keys& keys) {
     Line line{{.group = group, .name = group + ": " + name}, {}};
@@ -296,11 +296,11 @@ std::string sentence_of(const ConfigError& error, const std::string& mechanism) 
 }
 
 /// Evaluates the lines that the robot supports, all in one evaluation of its design.
-/// @param names  of the lines in the study
+/// @param names  names of the lines in the study
 void evaluate(const TaskRobot& robot, const Names& names, TaskEvaluation& task) {
   const DesignProblem& problem = *task.study.problem;
   const DesignReport report = problem.report(robot.parameters);
-  // A statistic over a region without feasible poses is the quantity's value for undefined poses.
+  // Over a region without feasible poses, a statistic has the quantity's value for undefined poses.
   Names empty;
   const std::vector<Region>& regions = problem.parts().regions;
   for (std::size_t k = 0; k < regions.size(); ++k)
@@ -316,7 +316,7 @@ void evaluate(const TaskRobot& robot, const Names& names, TaskEvaluation& task) 
         continue;
       }
       value.value = found[i];
-      if (std::isnan(found[i])) value.reason = report.reason.empty() ? "it is undefined" : report.reason;
+      if (std::isnan(found[i])) value.reason = report.reason.empty() ? "the value is undefined" : report.reason;
     }
   };
   store(problem.margins(), report.margins);
@@ -374,7 +374,8 @@ TaskEvaluation evaluate_task(const Task& task, const TaskRobot& robot, const Nam
   };
   const TomlValue all = document;
   for (const char* const kind : {"region", "motion"}) set_key(document, kind, list_value());
-  TaskEvaluation result{read(document), of_robot.origin(), {}, of_robot.why_no_drives()};  // throws for mistakes
+  // Throws ConfigError for mistakes in the task.
+  TaskEvaluation result{read(document), of_robot.origin(), {}, of_robot.why_no_drives()};
   for (const char* const kind : {"region", "motion"})
     for (const TomlValue& table : all.find(kind)->items) {
       TomlValue longer = document, tables = *document.find(kind);

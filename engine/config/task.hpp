@@ -30,23 +30,25 @@ Task load_task_toml(const std::string& path);
 
 /// A robot that is compared in a task.
 struct TaskRobot {
-  std::string name;  ///< unique, for [origin]
+  std::string name;  ///< unique name of the robot, to which [origin] refers
   std::shared_ptr<const Mechanism> mechanism;
   std::vector<double> parameters;
   TomlValue study;                        ///< document of its study; without a study, only the table [mechanism]
-  std::optional<SourceText> description;  ///< its mechanism file
+  std::optional<SourceText> description;  ///< text of its mechanism file; std::nullopt: the mechanism is built in
 };
 
 /// One line of a comparison.
 struct TaskValue {
   std::string group;  ///< the region or motion that the value belongs to; "": neither
-  std::string name;   ///< "bin: conditioning, min"
+  std::string name;   ///< name of the value, such as "bin: conditioning, min"
   std::string unit;
-  /// The robot can perform this part of the task if the value is at least this; std::nullopt: for information.
+  /// Minimum of the value for which the robot can perform this part of the task; std::nullopt: the value is only
+  /// reported.
   std::optional<double> required = {};
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not available
-  std::string reason = {};                                  ///< why it is not available
-  std::string limited_by = {};                              ///< the limit that determines the value; "": none is known
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< the value; NaN: it is not available
+  std::string reason = {};                                  ///< reason why the value is not available; "" if it is
+  std::string limited_by = {};                              ///< name of the limit that determines the value; "" if it
+                                                            ///< is unknown
   bool is_users = false;                                    ///< true for an [[output]] of the task
   bool is_mistake = false;  ///< an [[output]] of the task that the robot refuses; a mistake if all robots refuse it
 };
@@ -56,7 +58,7 @@ struct TaskEvaluation {
   Study study;                 ///< the task as a study of the robot, in its frame
   std::vector<double> origin;  ///< position of the robot's base in the frame of the task, by coordinate
   std::vector<TaskValue> values;
-  Unsupported why_no_drives = {};  ///< why the robot cannot have the drive trains of the task
+  Unsupported why_no_drives = {};  ///< reason why the robot cannot have the drive trains of the task; empty if it can
   /// Regions and motions that the robot refuses, such as a motion along a coordinate that it lacks. One that all robots
   /// refuse is a mistake.
   std::vector<std::pair<std::string, ConfigError>> refused = {};

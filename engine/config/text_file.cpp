@@ -11,13 +11,13 @@
 namespace pkm {
 
 std::string read_text_file(const std::string& path, const std::string& expected, std::size_t largest) {
-  std::error_code unreadable;  // reported below, when the file cannot be opened
+  std::error_code unreadable;  // ignored, because an unreadable file is reported below, when it cannot be opened
   if (std::filesystem::is_directory(path, unreadable)) throw ConfigError({path, 0, ""}, "a folder", expected);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw ConfigError({path, 0, ""}, std::string("no readable file (") + std::strerror(errno) + ")", expected);
   std::string text;
-  std::array<char, std::size_t{1} << 14> buffer;  // small, because clearing 16 MiB takes 10 ms
+  std::array<char, std::size_t{1} << 14> buffer;  // the buffer is small, because clearing 16 MiB takes 10 ms
   do {
     file.read(buffer.data(), buffer.size());
     text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));

@@ -12,9 +12,9 @@
 namespace pkm {
 namespace {
 
-constexpr double kSigmasOfBound = 3;  // default standard deviation: the bound divided by this
+constexpr double kSigmasOfBound = 3;  // ratio of the bound of an error to the default standard deviation
 
-/// One parameter in the table: common to all limbs ("l_a"), or of a single limb ("arm2.l_a").
+/// A parameter that [tolerance] names: one that all limbs share ("l_a"), or one of a single limb ("arm2.l_a").
 struct Tolerance {
   std::string name;
   ConfigValue value;
@@ -22,13 +22,13 @@ struct Tolerance {
   /// true: the parameter has an independent error in each limb; false: the same error in all limbs.
   bool is_independent;
   bool says_so;             ///< true: the file sets the key `copies`
-  std::string common = {};  ///< name of the parameter without that of a limb: "l_a"
+  std::string common = {};  ///< name of the parameter without the name of a limb, such as "l_a"
 };
 
 const std::vector<std::string> kSettings = {"samples", "correlation"};
 
-/// The names of parameters in the table, without its settings. A table whose key is no parameter holds those of a
-/// single limb.
+/// The names of parameters in the table, without its settings. If a key is not a parameter, but the name of a limb, its
+/// table contains parameters of this limb.
 std::vector<std::string> names_in(const ConfigValue& table, const std::vector<Parameter>& known) {
   std::vector<std::string> names;
   for (const std::string& key : table.keys()) {
@@ -47,7 +47,7 @@ std::optional<ConfigValue> find_tolerances(const ConfigValue& root, const std::v
   const auto table = root.find("tolerance");
   if (!table) return {};
   std::vector<std::string> names = names_in(*table, known);
-  for (const std::string& key : table->keys())  // also "arm2" of arm2.l_a
+  for (const std::string& key : table->keys())  // the keys include names of limbs, such as "arm2" of arm2.l_a
     if (!contains(kSettings, key) && !contains(names, key)) names.push_back(key);
   return table->table(named_keys(table->table_spec(), names));
 }
@@ -132,7 +132,8 @@ std::vector<LimbParameter> find_copies(const std::vector<Tolerance>& tolerances,
   return copies;
 }
 
-/// Sets the errors of a model: one for each copy, and one for each parameter without copies.
+/// Sets the errors of a tolerance model: one for each copy of a parameter in a limb, and one for each parameter without
+/// copies.
 void add_errors(const std::vector<Tolerance>& tolerances, const std::vector<LimbParameter>& copies,
                 const std::vector<Parameter>& known, ToleranceModel& model) {
   const auto add = [&](const std::string& name, const Tolerance& tolerance) {
@@ -170,7 +171,7 @@ void read_correlations(const ConfigValue& table, ToleranceModel& model) {
   const std::size_t count = model.errors.size();
   std::vector<std::vector<double>> matrix(count, std::vector<double>(count));
   for (std::size_t i = 0; i < count; ++i) matrix[i][i] = 1;
-  std::vector<std::size_t> group(count);  // number of the group of each error
+  std::vector<std::size_t> group(count);  // for each error, the number of its group
   std::iota(group.begin(), group.end(), std::size_t{0});
   const auto named = [&model](const ConfigValue& name) {
     const std::string& text = name.text("a parameter of the table");

@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kLongestQuote = 60;  // characters of a value that a message shows
+constexpr std::size_t kLongestQuote = 60;  // maximum number of characters of a value that a message shows
 
 std::vector<std::string_view> split_lines(std::string_view text) {
   std::vector<std::string_view> lines;
@@ -119,20 +119,21 @@ int line_too_deep(std::string_view text) {
   constexpr Depth kMax{32, 16};
   Depth depth;
   int line = 1;
-  // returns the index of the last character of the string that begins at `begin`
+  // Returns the index of the last character of the string that begins at `begin`.
   const auto skip_string = [&text, &line](std::size_t begin) {
     const char quote = text[begin];
     const bool long_one = text.substr(begin).starts_with(std::string(3, quote));
     for (std::size_t i = begin + (long_one ? 3 : 1); i < text.size(); ++i) {
       if (text[i] == '\n') {
-        if (!long_one) return i - 1;  // not TOML
+        if (!long_one) return i - 1;  // the string is not closed, so that the text is not TOML
         ++line;
       } else if (text[i] == '\\' && quote == '"') {
         i += i + 1 < text.size() && text[i + 1] != '\n';
       } else if (text[i] == quote && !long_one) {
         return i;
       } else if (long_one && text.substr(i).starts_with(std::string(3, quote))) {
-        while (i + 3 < text.size() && text[i + 3] == quote) ++i;  // up to two quotes may stand before the end
+        // Up to two quotes of the text may precede the closing quotes.
+        while (i + 3 < text.size() && text[i + 3] == quote) ++i;
         return i + 2;
       }
     }

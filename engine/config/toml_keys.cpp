@@ -89,7 +89,8 @@ class KeyScanner {
         return;
       } else if (multi_line && text_.substr(at_).starts_with(three)) {
         at_ += 3;
-        for (int quotes = 0; quotes < 2 && peek() == quote; ++quotes) ++at_;  // up to two quotes belong to the string
+        // Up to two quotes of the text may precede the closing quotes.
+        for (int quotes = 0; quotes < 2 && peek() == quote; ++quotes) ++at_;
         return;
       }
     }
@@ -101,7 +102,7 @@ class KeyScanner {
       bool is_table;
       Path path;
     };
-    std::vector<Open> open;  // inline tables and arrays that are open at the current position, outermost first
+    std::vector<Open> open;  // inline tables and arrays that contain the current position, outermost first
     for (bool at_key = false;;) {
       skip_blank(!open.empty());
       if (at_ >= text_.size()) return;

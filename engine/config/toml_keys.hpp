@@ -14,7 +14,7 @@ struct TomlKey {
   /// Names of the enclosing tables, then the key's own name; arrays contribute no index.
   std::vector<std::string> path;
   std::size_t begin = 0, size = 0;  ///< bytes of the name in the text, without quotes
-  int line = 0;                     ///< 1-based
+  int line = 0;                     ///< number of the line, from 1
 };
 
 /// All keys of a text in their order. Text that is not TOML gives meaningless keys, but no error. Escape sequences in

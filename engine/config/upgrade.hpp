@@ -10,14 +10,14 @@
 namespace pkm {
 
 struct ReplacedKey {
-  int line = 0;          ///< 1-based
-  std::string old_path;  ///< path of the replaced key: "workspace.certain"
-  std::string name;      ///< its present name: "certified"
+  int line = 0;          ///< number of the line, from 1
+  std::string old_path;  ///< path of the replaced key, for example "workspace.certain"
+  std::string name;      ///< present name of this key, for example "certified"
 };
 
 struct UpgradedText {
   std::string text;
-  std::vector<ReplacedKey> replaced;  ///< in the order of the text; empty: `text` is unchanged
+  std::vector<ReplacedKey> replaced;  ///< the replaced keys in the order of the text; empty: `text` is unchanged
 };
 
 /// Upgrades a text without checking that it is valid TOML: invalid text may be changed, but does not become valid.

@@ -16,9 +16,11 @@ namespace pkm {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid, taken from the 4PPa-2PaR paper
-constexpr std::int64_t kIntegratedCells = 32;                   // default along a coordinate that is integrated over
-constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;       // maximum; a voxel map takes one byte per cell
-constexpr double kDefaultGap = 1e-2;                            // relative gap for `certified = true`
+constexpr std::int64_t kIntegratedCells = 32;                   // default number of cells along a coordinate that is
+                                                                // integrated over
+constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;       // maximum total number of cells; a voxel map takes one
+                                                                // byte per cell
+constexpr double kDefaultGap = 1e-2;                            // relative gap of the bounds for `certified = true`
 
 bool integrated(const FixedCoordinate& fixed) { return fixed.kind == FixedCoordinate::Kind::integrated; }
 
@@ -37,7 +39,7 @@ std::int64_t set_cells(const MechanismInfo& info, WorkspacePlan& plan, const Cel
   const std::vector<int>& swept = sweep_of(info, plan).swept;
   auto& cells = std::get<VoxelOptions>(plan.method).cells;
   std::int64_t all = 1;
-  // Each factor is at most 2^20.
+  // The product cannot overflow, because each factor is at most 2^20.
   for (std::size_t k = 0; k < swept.size(); ++k) all *= cells[k] = cells_of(axis_of(info, swept[k]).name);
   for (FixedCoordinate& fixed : plan.fixed)
     if (integrated(fixed)) fixed.cells = cells_of(axis_of(info, fixed.coordinate).name);
@@ -202,7 +204,7 @@ void read_survey(const ConfigValue& table, const Mechanism& mechanism, bool of_r
     throw nodes->refusal("tolerance (" + tolerance->line() + ") and nodes both set the accuracy; give one of them");
   if (const auto list = table.find("sweep")) read_sweep(*list, info, plan);
   read_fixed_coordinates(table, info, of_region,
-                         plan);  // determines the swept coordinates, if the study does not name them
+                         plan);  // determines which coordinates are swept, if the study does not name them
   const Sweep& sweep = sweep_of(info, plan);
   if (auto* const columns = std::get_if<ColumnOptions>(&plan.method)) {
     if (tolerance) columns->tolerance = relative;

@@ -25,7 +25,7 @@ struct Location {
   std::set<int> cores;
 };
 
-std::unique_ptr<Backend> group;     // null if there is only this process
+std::unique_ptr<Backend> group;     // communication of the MPI processes; null: a single process
 std::vector<Location> locations;    // element k: location of rank k
 double seconds_in_collectives = 0;  // time spent in collective functions [s]
 std::mutex mailbox_mutex;

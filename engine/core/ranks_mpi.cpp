@@ -294,7 +294,7 @@ class Mpi final : public Backend {
   bool initialized_here_ = true, one_host_ = true;
   MPI_Comm group_ = MPI_COMM_NULL, mail_ = MPI_COMM_NULL;
   std::optional<SharedCounters> counters_;
-  std::list<PendingSend> pending_;  ///< messages that are being transferred, whose buffers MPI may still read
+  std::list<PendingSend> pending_;  ///< messages that are still being sent, so that MPI may read their buffers
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ std::optional<std::size_t> decimal_point_index(std::string_view text) {
   double value = 0;
   const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (read.ec != std::errc() || read.ptr != digits.data() + digits.size()) return {};
-  // The text is not a number with digits, such as "inf".
+  // The text is a value without digits, such as "inf".
   if (std::ranges::none_of(digits, [](unsigned char c) { return std::isdigit(c) != 0; })) return {};
   return std::min(text.find_first_of(".e", begin), end);
 }

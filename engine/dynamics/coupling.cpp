@@ -7,7 +7,7 @@
 namespace pkm {
 namespace {
 
-/// See extreme_eigenvectors().
+/// Implementation of extreme_eigenvectors() for matrices of one size.
 /// @tparam N  number of rows, or Eigen::Dynamic
 template <int N>
 std::optional<ExtremeEigenvectors> extreme(std::span<const double> elements, int n) {

@@ -33,7 +33,7 @@ Solutions solutions_of(const AxisMatrix<double>& J, const VectorXd& scale, const
   MatrixXd scaled(m, n);
   for (Index i = 0; i < m; ++i)
     for (Index j = 0; j < n; ++j) scaled(i, j) = scale(i) * J(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-  // scaled P = Q R, so that y = Q (R^-T P^T f, lambda)
+  // With the decomposition scaled P = Q R, the solutions are y = Q (R^-T P^T f, lambda).
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled);
   const MatrixXd Q = qr.householderQ();
   const MatrixXd R = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
@@ -41,7 +41,7 @@ Solutions solutions_of(const AxisMatrix<double>& J, const VectorXd& scale, const
   return {Q.leftCols(n) * R.transpose().triangularView<Eigen::Lower>().solve(permuted), Q.rightCols(m - n)};
 }
 
-/// The lambda of least norm with lower <= particular + basis lambda <= upper; std::nullopt if there is none.
+/// The lambda of least norm with lower <= particular + basis lambda <= upper; std::nullopt if no lambda satisfies this.
 std::optional<VectorXd> nearest(const Solutions& y, const VectorXd& lower, const VectorXd& upper) {
   const Index r = y.basis.cols();
   // All limits are divided by a length that exceeds |lambda| if all of them are finite. Then the residual of the least
@@ -78,7 +78,8 @@ std::optional<VectorXd> nearest(const Solutions& y, const VectorXd& lower, const
   return is_within ? std::optional(lambda) : std::nullopt;
 }
 
-/// Largest s in [0, most] for which is_possible(s), which holds for all smaller s, too; 0 if for none.
+/// Finds the largest s in [0, most] for which is_possible(s) is true, if it is true for all smaller s, too; 0 if it is
+/// true for no s.
 template <class Possible>
 double bisect(double most, const Possible& is_possible) {
   double from = 0, to = most;
@@ -89,14 +90,15 @@ double bisect(double most, const Possible& is_possible) {
   return from;
 }
 
-/// The lambda that minimises the largest magnitude and, among several, the norm.
+/// The lambda that minimises the largest magnitude of y and, if several lambda do, the one with the least norm.
 VectorXd least_maximum(const Solutions& y, const VectorXd& lower, const VectorXd& upper, const VectorXd& start) {
   const double largest = (y.particular + y.basis * start).cwiseAbs().maxCoeff();
   const auto within = [&](double magnitude) {
     return nearest(y, lower.cwiseMax(-magnitude), upper.cwiseMin(magnitude));
   };
   const double reduction = bisect(largest, [&](double by) { return within(largest - by).has_value(); });
-  constexpr double kRounding = 1e-9;  // so that the set is not a single point
+  // Relative widening of the limits, so that the set of solutions is not a single point.
+  constexpr double kRounding = 1e-9;
   return within(largest - reduction + kRounding * largest).value_or(start);
 }
 
@@ -114,12 +116,12 @@ VectorXd analytic_centre(const Solutions& y, const VectorXd& lower, const Vector
   };
   for (int step = 0; step < 100; ++step) {
     const auto [below, above] = distances(lambda);
-    if (!(below.minCoeff() > 0 && above.minCoeff() > 0)) return lambda;  // the set has no interior
+    if (!(below.minCoeff() > 0 && above.minCoeff() > 0)) return lambda;  // the set of solutions has no interior
     const VectorXd gradient = y.basis.transpose() * (below.cwiseInverse() - above.cwiseInverse());
     const VectorXd weights = below.cwiseInverse().cwiseAbs2() + above.cwiseInverse().cwiseAbs2();
     const VectorXd change = (y.basis.transpose() * weights.asDiagonal() * y.basis).ldlt().solve(gradient);
     const double decrement = std::sqrt(std::max(0.0, gradient.dot(change)));
-    lambda += change / (1 + decrement);  // stays inside: the logarithms are self-concordant
+    lambda += change / (1 + decrement);  // the point stays in the interior, because the logarithms are self-concordant
     if (decrement < 1e-9) break;
   }
   return lambda;
@@ -149,7 +151,7 @@ std::optional<AxisVector<double>> distribute_forces(const AxisMatrix<double>& J,
   if (y.basis.cols() > 0 && limits.sharing == ForceSharing::centre) lambda = analytic_centre(y, lower, upper, *lambda);
   const VectorXd forces = (y.particular + y.basis * *lambda).cwiseProduct(scale);
   AxisVector<double> tau(limits.scale.size());
-  // lambda is at a limit only up to rounding errors
+  // lambda satisfies a limit only up to rounding errors, so that forces are moved into their limits.
   for (std::size_t i = 0; i < tau.size(); ++i)
     tau[i] = std::clamp(forces(static_cast<Index>(i)), limits.lower[i], limits.upper[i]);
   return tau;

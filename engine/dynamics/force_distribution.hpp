@@ -14,20 +14,22 @@
 namespace pkm {
 
 enum class ForceSharing {
-  least_norm,     ///< minimum of the sum of squares
-  least_maximum,  ///< minimum of the largest magnitude; among several solutions, the one of least norm
-  centre          ///< maximum of the product of the distances from all limits (analytic centre)
+  least_norm,     ///< minimum of the sum of the squared drive forces
+  least_maximum,  ///< minimum of the largest magnitude of a drive force; among several solutions, the one with the
+                  ///< least norm
+  centre          ///< maximum of the product of the distances of the drive forces from all limits (analytic centre)
 };
 
 struct DriveLimits {
   ForceSharing sharing = ForceSharing::least_norm;
-  /// Forces or torques by which least_norm and least_maximum divide those of the drives, by joint [N, N m].
+  /// Force or torque by which the force of each drive is divided in least_norm and least_maximum, by joint [N, N m].
   AxisVector<double> scale;
-  /// Limits of the forces, by joint [N, N m]; infinite if there are none. A cable has -t_max and -t_min.
+  /// Lower and upper limits of the drive forces, by joint [N, N m]; infinite if there are none. A cable has -t_max and
+  /// -t_min.
   AxisVector<double> lower, upper;
 };
 
-/// Limits of drives that may exert any force, which share a load by least norm.
+/// Limits for drives that can exert any force; the drives share a load by least norm.
 DriveLimits no_drive_limits(std::size_t joints);
 
 /// Drive forces tau with J^T tau = f, within the limits.

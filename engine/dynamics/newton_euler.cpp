@@ -113,7 +113,7 @@ MinNormSolution min_norm_solution(const NewtonEuler& system) {
   const Index rank = decomposition.rank(), unknowns = e.A.cols();
   MinNormSolution solution{.x = decomposition.solve(e.b), .null_space = {}, .rank = static_cast<int>(rank)};
   for (const JointColumns& at : columns) solution.x.segment(at.couples, at.couple_count) *= length;
-  // A = Q [T 0; 0 0] Z P^T: the last columns of P Z^T span the null space of A.
+  // With the decomposition A = Q [T 0; 0 0] Z P^T, the last columns of P Z^T span the null space of A.
   solution.null_space.resize(unknowns, 0);
   if (rank < unknowns)
     solution.null_space = decomposition.colsPermutation() *

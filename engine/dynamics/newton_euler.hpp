@@ -72,7 +72,7 @@ struct MinNormSolution {
 /// depends on it, but not its determined components.
 double couple_length(const NewtonEuler& system);
 
-inline constexpr double kRankTolerance = 1e-10;  ///< smaller pivots, relative to the largest one, count as 0
+inline constexpr double kRankTolerance = 1e-10;  ///< pivots that are smaller relative to the largest pivot count as 0
 /// Solves the equations by complete orthogonal decomposition.
 MinNormSolution min_norm_solution(const NewtonEuler& system);
 

@@ -41,7 +41,7 @@ struct MotionState {
 /// The equations of motion in the coordinates of the platform.
 template <class S>
 struct PoseDynamics {
-  /// False: the mechanism cannot be assembled at the pose, and the following members are not set.
+  /// False: the mechanism cannot be assembled at the pose, and the members below are not set.
   bool assembles = false;
   AxisVector<S> q;         ///< joint positions [m, rad]
   AxisMatrix<S> J;         ///< Jacobian, joints x coordinates: qdot = J Xdot
@@ -79,8 +79,8 @@ AxisVector<S> at_joints(const PoseDynamics<S>& d, const AxisVector<S>& f) {
   return forces;
 }
 
-/// Inverse dynamics: forces tau of the actuators for an acceleration Xddot under a wrench on the platform [N, N m]; NaN
-/// if J is singular to working precision.
+/// Inverse dynamics: forces tau of the actuators that produce an acceleration Xddot under a wrench on the platform [N,
+/// N m]; NaN if J is singular to working precision.
 template <class S>
 AxisVector<S> drive_forces(const PoseDynamics<S>& d, const std::type_identity_t<AxisVector<S>>& acceleration,
                            const Wrench<S>& wrench) {

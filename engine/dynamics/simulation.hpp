@@ -36,7 +36,7 @@ struct SimulationSetup {
   std::function<AxisVector<double>(const AxisVector<double>& speeds)> friction;
   Wrench<double> wrench;  ///< constant load on the platform [N, N m]
   /// Returns the reason why the simulation must stop at a pose, for example a violated limit, as a sentence; otherwise
-  /// "". An empty function: no such check.
+  /// "". An empty function: poses are not checked.
   std::function<std::string(const Pose<double>&)> refuse;
   double duration = 0;      ///< duration of the simulation, > 0 [s]
   double step = 0;          ///< time step, > 0 [s]; the last step is shortened so that it ends at `duration`

@@ -6,7 +6,7 @@
 namespace pkm {
 namespace {
 
-// Number of vertices of a circle, and of circles of a hemisphere including its pole.
+// Number of vertices of a circle, and number of circles of a hemisphere, its pole included.
 constexpr std::uint32_t kAround = 24, kRings = 6;
 
 Point3<double> scaled(const Point3<double>& v, double by) { return {v[0] * by, v[1] * by, v[2] * by}; }
@@ -27,7 +27,8 @@ void add_shape(const Capsule<double>& capsule, Isosurface& surface) {
   const auto [u, v, w] = frame_along(capsule.axis);
   const auto first = static_cast<std::uint32_t>(surface.vertices.size());
   for (std::uint32_t ring = 0; ring < 2 * kRings; ++ring) {
-    const bool end = ring >= kRings;  // false: the hemisphere at axis.from; true: the one at axis.to
+    // true: the circle is on the hemisphere at axis.to; false: on the hemisphere at axis.from.
+    const bool end = ring >= kRings;
     const double latitude =
         std::numbers::pi / 2 * (static_cast<double>(end ? ring - kRings : ring) / (kRings - 1) - (end ? 0 : 1));
     const double out = ring == 0 || ring == 2 * kRings - 1 ? 0 : capsule.radius * std::cos(latitude);
@@ -60,7 +61,8 @@ void add_shape(const SolidBox& box, Isosurface& surface) {
     for (std::size_t i = 0; i < 3; ++i) corner[i] += bits >> i & 1 ? box.half[i] : -box.half[i];
   }
   for (std::uint32_t i = 0; i < 3; ++i) {
-    // u and v are the bits of the other two axes, such that (u, v, i) is a right-handed frame.
+    // u and v are the bits of the other two axes in the vertex numbers, chosen such that (u, v, i) is a right-handed
+    // frame.
     const std::uint32_t u = 1U << (i + 1) % 3, v = 1U << (i + 2) % 3;
     for (const std::uint32_t side : {0U, 1U}) {
       const std::uint32_t a = first + side * (1U << i), b = a + (side ? u : v), c = a + (side ? v : u);

@@ -6,7 +6,8 @@
 namespace pkm {
 namespace {
 
-constexpr double kTail = 0.02;  // maximum share of the values that may lie beyond an open end of the scale
+// Maximum share of the values that may lie beyond the end of the scale, if this end is open.
+constexpr double kTail = 0.02;
 // A field whose range is smaller than this, relative to its values, counts as constant.
 constexpr double kConstant = 1e-9;
 constexpr double kMinIntervals = 7;  // minimum number of intervals of a scale

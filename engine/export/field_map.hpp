@@ -16,7 +16,7 @@ namespace pkm {
 struct ContourLevels {
   /// Round numbers from the lower to the upper end of the scale; a single value if the field is constant.
   std::vector<double> values;
-  /// True if the field has values beyond the lower (upper) end of the scale.
+  /// open_below, open_above: true if the field has values below the lower end or above the upper end of the scale.
   bool open_below = false, open_above = false;
   double minimum = 0, maximum = 0;  ///< smallest and largest value of the field
 

@@ -113,7 +113,8 @@ class SurfaceBuilder {
         const auto is_inside = [&](double fraction) {
           return margin(workspace.pose(edges_[k].at(fraction)), scratch[worker]) >= 0;
         };
-        // The margin has no sign change here: the surface is a singularity, beyond which a component is not counted.
+        // The margin does not change its sign here: the surface is a singularity, beyond which another component lies
+        // that is not part of the workspace.
         if (is_inside(1)) continue;
         const Bracket bracket = bisect(is_inside, {.with = 0, .without = 1}, kEdgeFraction);
         surface_.vertices[k] = edges_[k].at(bracket.middle());

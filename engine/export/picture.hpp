@@ -31,12 +31,12 @@ struct Picture {
   struct Area {
     std::vector<SliceOutline::Loop> loops;  ///< closed polygons, which are filled by the even-odd rule
     Colour colour;
-    double opacity = 1;  ///< from 0 (transparent) to 1
+    double opacity = 1;  ///< opacity of the fill, from 0 (transparent) to 1
   };
   struct Polyline {
     std::vector<PlanePoint> points;
     Colour colour;
-    double width = 1;  ///< [pixel]
+    double width = 1;  ///< width of the line [pixel]
   };
 
   double width = 0, height = 0;

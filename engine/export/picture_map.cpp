@@ -91,7 +91,8 @@ void draw_regions(const FieldMap& map, const Bands& bands, const std::vector<dou
       draw(place->before);
       draw(place->after);
       labels.push_back(place->at);
-      const double turn = place->angle * std::numbers::pi / 180, below = 4;  // pixels from the middle of a digit
+      // Distance of the text's baseline below the middle of a digit [pixel].
+      const double turn = place->angle * std::numbers::pi / 180, below = 4;
       picture.texts.push_back({place->at[0] + below * std::sin(turn), place->at[1] + below * std::cos(turn), label,
                                Anchor::middle, false, place->angle, ink, background});
     }

@@ -107,10 +107,10 @@ void RasterImage::blend(std::size_t x, std::size_t y, const Colour& colour, doub
 std::string RasterImage::png() const {
   std::string rows;
   for (std::size_t y = 0; y < height_; ++y) {
-    rows += '\0';  // the filter type of the row: no filter
+    rows += '\0';  // filter type of the row: 0, i.e. no filter
     rows.append(reinterpret_cast<const char*>(&values_[3 * width_ * y]), 3 * width_);
   }
-  const std::string format = {8, 2, 0, 0, 0};  // 8 bits per sample, RGB
+  const std::string format = {8, 2, 0, 0, 0};  // format of the pixels: 8 bits per sample, RGB
   return "\x89PNG\r\n\x1a\n" +
          chunk("IHDR", big_endian(static_cast<std::uint32_t>(width_)) +
                            big_endian(static_cast<std::uint32_t>(height_)) + format) +

@@ -150,7 +150,7 @@ std::vector<PointPath> join_edges(std::vector<PathEdge> edges) {
     PointPath path = {edges[first].first};
     for (std::size_t k = first; k < edges.size() && edges[k].first == path.back();) {
       if (used[k]) {
-        ++k;  // another edge may begin at the same point
+        ++k;  // another edge can begin at the same point
         continue;
       }
       used[k] = 1;

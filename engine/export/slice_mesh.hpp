@@ -16,7 +16,7 @@
 namespace pkm {
 
 using PlanePoint = std::array<double, 2>;
-/// Path as indices of points; it is closed if the first and the last index are equal.
+/// A path of the mesh, given by the indices of its points; it is closed if the first and the last index are equal.
 using PointPath = std::vector<std::uint64_t>;
 /// Directed edge from one point to another, as indices of points.
 using PathEdge = std::pair<std::uint64_t, std::uint64_t>;

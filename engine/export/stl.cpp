@@ -30,10 +30,11 @@ std::string stl_file(const Isosurface& surface, const std::string& title) {
     if (!(area > 0)) continue;  // degenerate triangles on edges of the box, where vertices coincide, are omitted
     append(facets, {normal[0] / area, normal[1] / area, normal[2] / area});
     for (const auto& vertex : {p, q, r}) append(facets, vertex);
-    facets.append(2, '\0');  // attribute byte count
+    facets.append(2, '\0');  // number of attribute bytes of the triangle: 0
     ++count;
   }
-  std::string bytes = ("pkmopt " + title).substr(0, 80);  // must not begin with "solid", which would mark an ASCII file
+  // The text must not begin with "solid", which would mark an ASCII file.
+  std::string bytes = ("pkmopt " + title).substr(0, 80);
   bytes.resize(80, ' ');
   append(bytes, count);
   return bytes + facets;

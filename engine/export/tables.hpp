@@ -9,18 +9,18 @@
 
 namespace pkm {
 
-/// One row per cell: the coordinates of its centre and all fields.
+/// Table of a workspace with one row per cell: the coordinates of the cell's centre and all fields.
 CsvTable workspace_table(const WorkspaceFields& workspace);
 
-/// One row per feasible cell: the coordinates of its centre, the coupling index of each joint, and the largest of these
-/// indices.
+/// Table of coupling indices with one row per feasible cell: the coordinates of the cell's centre, the coupling index
+/// of each joint, and the largest of these indices.
 /// @param workspace  its samples must contain poses and the field kCouplingIndex
 CsvTable coupling_table(const MechanismInfo& info, const WorkspaceResult<double>& workspace);
 
-/// One row per sample; undefined values are empty cells.
+/// Table of a trajectory with one row per sample; undefined values are empty cells.
 CsvTable trajectory_table(const Mechanism& mechanism, const Trajectory& trajectory);
 
-/// One row per time step of a simulation.
+/// Table of a simulation with one row per time step.
 /// @param friction  true if the drives have friction, for which columns are added
 CsvTable simulation_table(const MechanismInfo& info, const Simulation& run, bool friction);
 

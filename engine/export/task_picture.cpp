@@ -111,7 +111,8 @@ class ComparisonDrawing {
       picture_.lines.push_back({{{kRightOf, top_ - 4}, {kRightOf + 22, top_ - 4}}, robot_colour(r), 4});
       const std::string verdict = comparison_.robots[r].verdict();
       add_text(kRightOf + 32, top_,
-               comparison_.robots[r].name + (verdict == "nothing is asked" ? "" : ", does the task: " + verdict));
+               comparison_.robots[r].name +
+                   (verdict == "the task has no requirements" ? "" : ", does the task: " + verdict));
     }
     right_ = kLeftOf + kFrameWidth + kRightOf;
   }
@@ -190,7 +191,7 @@ class ComparisonDrawing {
       picture_.lines.push_back({std::move(corners), kRegion, 1.5});
       picture_.texts.push_back({upper_left[0], upper_left[1] - 4, box.name, Anchor::begin, false, 0, kRegion, kWhite});
     }
-    // The path of a motion is that of the first robot that has both axes.
+    // The path of a motion is drawn for the first robot that has both axes.
     for (const std::string& name : motions())
       for (const ComparedRobot& robot : comparison_.robots) {
         const TaskMotion* const motion = find_named(robot.motions, name);
@@ -242,7 +243,8 @@ class ComparisonDrawing {
       double duration;
       const TaskCurve* curve;
     };
-    std::vector<std::vector<Curve>> panels;  // by name of the curve
+    // The curves of each panel, in which the curves of all robots have the same name.
+    std::vector<std::vector<Curve>> panels;
     double duration = 0;
     for (std::size_t r = 0; r < comparison_.robots.size(); ++r) {
       const TaskMotion* const motion = find_named(comparison_.robots[r].motions, name);
@@ -278,7 +280,8 @@ class ComparisonDrawing {
       for (const Curve& each : panels[k]) {
         const std::vector<double>& values = each.curve->values;
         std::vector<PlanePoint> points;
-        const auto end_line = [&] {  // a curve has gaps where its values are undefined
+        // Called where the values of a curve are undefined, so that the curve has a gap there.
+        const auto end_line = [&] {
           if (points.size() > 1) picture_.lines.push_back({points, robot_colour(each.robot), 1.8});
           points.clear();
         };
@@ -299,9 +302,9 @@ class ComparisonDrawing {
 
   const TaskComparison& comparison_;
   std::vector<std::vector<SliceOutline::Loop>> outlines_;  ///< see outline()
-  std::vector<Range> ranges_;                              ///< of each axis
+  std::vector<Range> ranges_;                              ///< range of each axis
   Picture picture_;
-  double top_ = 0, right_ = 0;  ///< lower end of what is drawn, and its right end
+  double top_ = 0, right_ = 0;  ///< top_: y below everything that has been drawn; right_: x of its right end [pixel]
 };
 
 }  // namespace

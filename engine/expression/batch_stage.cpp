@@ -8,7 +8,7 @@ BatchStage::BatchStage(const Program& program, std::size_t stage, std::span<cons
     : operands_(program.registers()) {
   for (std::uint32_t i = 0; i < operands_.size(); ++i) operands_[i] = {.index = i};
   const Program::Stage& of = program.stages()[stage];
-  // last[r]: index of the last step that reads register r; never_freed if its row must not be reused
+  // last[r]: index of the last step that reads register r; never_freed if the row of r must not be reused
   const std::size_t never_freed = of.steps.size();
   std::vector<std::size_t> last(program.registers());
   for (std::size_t k = 0; k < of.steps.size(); ++k)

@@ -34,7 +34,7 @@ using Rows = std::vector<double, CacheLineAllocator<double>>;
 
 /// An operand of a step: a row of this stage, or a single number of an earlier stage.
 struct Operand {
-  std::uint32_t index = 0;  ///< of a row: its slot in `rows`; of a single number: its register
+  std::uint32_t index = 0;  ///< if `row` is true: number of the row's slot in `rows`; otherwise number of a register
   bool row = false;         ///< true: a row with one number per input value; false: a single number
 };
 

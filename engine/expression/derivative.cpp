@@ -59,7 +59,7 @@ Term Rates::differentiate(Node node) {
   if (name == "asin") return dx / sqrt(one - x * x);
   if (name == "acos") return -(dx / sqrt(one - x * x));
   if (name == "atan") return dx / (one + x * x);
-  if (name == "atan2") {  // atan2(y, x): y is the first argument
+  if (name == "atan2") {  // y is the first argument of atan2(y, x)
     const Term& y = x;
     const Term abscissa = argument(1);
     return (abscissa * dx - y * rate(1)) / (abscissa * abscissa + y * y);
@@ -80,7 +80,7 @@ Term Rates::differentiate(Node node) {
     const Term by_base = dx.is(0) ? zero : y * call(operation("^"), x, exact ? Term(graph_, reduced) : y - one) * dx;
     return rate(1).is(0) ? by_base : by_base + f * call(operation("log"), x) * rate(1);
   }
-  return zero;  // piecewise constant: comparisons, && and ||, sign
+  return zero;  // the operation is piecewise constant: a comparison, && or ||, or sign
 }
 
 }  // namespace pkm::expression

@@ -22,7 +22,7 @@
 
 namespace pkm {
 
-/// Immutable and thread-safe.
+/// A parsed formula of named variables. Immutable and thread-safe.
 class Formula {
  public:
   /// Throws std::invalid_argument with a message that gives the position of the error if `text` is not a valid formula,

@@ -76,7 +76,7 @@ class Lexer {
     } else if (rest[0] == '=') {
       refuse(text_, "has a " + quote("=", i) + "; formulas have no assignment, compare with '=='");
     } else if (std::string_view("+-*/^<>?:").find(rest[0]) == std::string_view::npos) {
-      // if the character is not ASCII, include all bytes of its UTF-8 encoding
+      // If the character is not ASCII, include all bytes of its UTF-8 encoding.
       while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0U) == 0x80U) ++length;
       refuse(text_, "has a " + quote(rest.substr(0, length), i) + ", which is not allowed in formulas");
     }

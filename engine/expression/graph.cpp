@@ -96,7 +96,7 @@ std::vector<Node> Graph::reachable(std::span<const Node> roots, const std::funct
   for (const Node root : roots) visit(root);
   for (std::size_t i = 0; i < all.size(); ++i)
     for (const Node operand : (*this)[all[i]].operands()) visit(operand);
-  std::ranges::sort(all);  // by index, which is a topological order
+  std::ranges::sort(all);  // the order of the indices is a topological order
   return all;
 }
 
@@ -160,7 +160,7 @@ Graph substitute_nodes(const Graph& graph, std::span<const std::optional<Node>> 
   std::vector<Node> wanted;
   for (const auto& node : nodes)
     if (node) wanted.push_back(*node);
-  // in topological order: a replacement precedes the nodes that use it
+  // Topological order, in which a replacement precedes the nodes that use it.
   std::vector<Node> order = graph.reachable(wanted);
   const std::vector<Node> others = graph.reachable(roots);
   order.insert(order.end(), others.begin(), others.end());

@@ -8,12 +8,12 @@
 namespace pkm::expression {
 namespace {
 
-// maximum number of coefficients of intermediate polynomials: the square of a quadratic has 5
+// Maximum number of coefficients of intermediate polynomials; the square of a quadratic has 5.
 constexpr std::size_t kMaxCoefficients = 5;
 // Maximum nesting depth, and maximum number of nodes visited; a constraint that exceeds one of them is not converted.
 constexpr int kMaxDepth = 500, kMaxSteps = 100'000;
 
-/// Coefficients of a polynomial in z, constant term first; empty: 0.
+/// Coefficients of a polynomial in z, constant term first; an empty list is the polynomial 0.
 using Coefficients = std::vector<Term>;
 
 /// The radical form A + B sqrt(Q) of a node, where A, B and Q are polynomials in z.
@@ -137,7 +137,7 @@ class NormalForm {
         if (!x || !x->B.empty()) return {};
         return RadicalForm{.A = {}, .B = {Term(graph_, 1.0)}, .radicand = entry.arguments[0], .Q = x->A};
       }
-      case Code::abs: {  // |b sqrt(Q)| = |b| sqrt(Q)
+      case Code::abs: {  // |b sqrt(Q)| is replaced by |b| sqrt(Q)
         const auto& x = forms_.at(entry.arguments[0]);
         if (!squares_ || !x || !x->A.empty() || x->B.size() != 1) return {};
         return RadicalForm{.A = {}, .B = {abs(x->B[0])}, .radicand = x->radicand, .Q = x->Q};
@@ -156,9 +156,9 @@ class NormalForm {
       if (code == Code::subtract) {
         const Term x(graph_, entry.arguments[0]), y(graph_, entry.arguments[1]);
         if (auto found = squares_ ? clauses_of_form(node) : std::nullopt) return found;
-        if (const auto inner = inside_of_abs(y))  // x - |u| >= 0
+        if (const auto inner = inside_of_abs(y))  // the constraint is x - |u| >= 0
           return conjunction(clauses((x - *inner).node()), clauses((x + *inner).node()));
-        if (const auto inner = inside_of_abs(x))  // |u| - y >= 0
+        if (const auto inner = inside_of_abs(x))  // the constraint is |u| - y >= 0
           return disjunction(clauses((*inner - y).node()), clauses((-*inner - y).node()));
         if (auto found = squares_ ? clauses_of_moved(x, y) : std::nullopt) return found;
       }

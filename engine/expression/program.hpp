@@ -19,8 +19,8 @@
 
 namespace pkm::expression {
 
-/// Immutable and thread-safe, because the registers belong to the caller. Every node that an output depends on has its
-/// own register.
+/// A compiled program. It is immutable and thread-safe, because the registers belong to the caller. Every node that an
+/// output depends on has its own register.
 class Program {
  public:
   struct Step {
@@ -28,10 +28,10 @@ class Program {
     std::uint32_t to;                               ///< register of the result
     std::array<std::uint32_t, kMaxArguments> from;  ///< registers of the arguments
     std::uint8_t count;                             ///< number of arguments
-    Code code;                                      ///< operation->code
+    Code code;                                      ///< code of `operation`
   };
   struct Input {
-    std::uint32_t position;  ///< index among the inputs of the graph
+    std::uint32_t position;  ///< index of the input among the inputs of the graph
     std::uint32_t to;        ///< register that receives the value of the input
   };
   struct Stage {

@@ -15,7 +15,7 @@ Term Minors::of(unsigned columns) {
   if (const auto found = known_.find(columns); found != known_.end()) return found->second;
   const std::size_t row = rows_[static_cast<std::size_t>(std::popcount(columns)) - 1];
   Term sum(A_.graph(), 0.0);
-  // sign of the cofactor: positive for the last column of the submatrix, then alternating from right to left
+  // Sign of the cofactor: it is positive for the last column of the submatrix and alternates from right to left.
   bool is_negative = false;
   for (std::size_t j = A_.columns(); j-- > 0;) {
     if ((columns >> j & 1U) == 0) continue;
@@ -55,7 +55,7 @@ std::array<Term, 2> eigenvalue_range_3(const TermMatrix& A) {
   const Term half = sum_of_squares({a, b, c}) * 0.5 + sum_of_squares({d, e, f});  // |B|^2 / 2
   const Term p = regular_root(half / 3, q);
   const Term det = a * (b * c - d * d) - f * (f * c - d * e) + e * (f * d - b * e);
-  // orthonormal components of B and of the deviator of S = B^2
+  // Returns the orthonormal components of a symmetric matrix (B, or the deviator of S = B^2).
   const auto components = [](const Term& xx, const Term& yy, const Term& zz, const Term& yz, const Term& xz,
                              const Term& xy) {
     return std::array<Term, 5>{(xx - yy) / std::sqrt(2.0), (zz * 2 - xx - yy) / std::sqrt(6.0), yz * std::sqrt(2.0),
@@ -165,8 +165,8 @@ Term greatest_eigenvalue(const TermMatrix& A) {
     for (std::size_t i = 1; i < of.rows(); ++i) sum = sum + of(i, i);
     return sum;
   };
-  // By repeated squaring of A with the trace scaled to 1: for the maximum eigenvalue lambda, log lambda = sum of
-  // log(t_k) / 2^k, where t_k is the trace of the k-th square before it is scaled.
+  // Compute it by repeated squaring of A, whose trace is scaled to 1 before each step: for the maximum eigenvalue
+  // lambda, log lambda = sum of log(t_k) / 2^k, where t_k is the trace of the k-th square before it is scaled.
   TermMatrix power = A;
   Term sum = Term(A.graph(), 0.0);
   for (int k = 0; k <= kSquarings; ++k) {

@@ -12,7 +12,7 @@ Rotation rotation_about(std::size_t axis, const Term& sine, const Term& cosine) 
   return R;
 }
 
-Rotation rotation_about(const Vector3& axis, const Term& angle) {  // cos I + (1 - cos) e e^T + sin [e]x
+Rotation rotation_about(const Vector3& axis, const Term& angle) {  // the matrix is cos I + (1 - cos) e e^T + sin [e]x
   const Term sine = sin(angle), cosine = cos(angle), rest = Term(angle.graph(), 1.0) - cosine;
   const Vector3 e = axis, s = axis * sine;
   const auto symmetric = [&](std::size_t i, std::size_t j) { return e[i] * e[j] * rest; };

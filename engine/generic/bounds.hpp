@@ -6,7 +6,7 @@
 
 namespace pkm::generic {
 
-/// Throws std::invalid_argument with a message if certified bounds do not support a plan.
+/// Throws std::invalid_argument with a message if no certified bounds can be computed for a workspace plan.
 void require_bounds(const Model& model, const WorkspacePlan& plan);
 /// Bounds of the workspace volume of a design.
 VolumeBounds bound_volume(const Mechanism& mechanism, const Evaluation& evaluation, std::span<const double> parameters,

@@ -25,8 +25,8 @@ struct NormalisedConstraints {
   };
   std::vector<Crank> cranks;
 
-  /// All nodes that the program has to compute: constraints, then clauses, then cranks. Each polynomial of a clause or
-  /// crank contributes its coefficients c[0] to c[2].
+  /// All nodes that the program has to compute: constraints, then clauses, then cranks. For each polynomial of a clause
+  /// or crank, these nodes are its coefficients c[0] to c[2].
   std::vector<Node> outputs() const {
     std::vector<Node> all = plain;
     const auto add = [&all](const expression::Polynomial& q) { all.insert(all.end(), q.c.begin(), q.c.begin() + 3); };
@@ -215,7 +215,7 @@ double CellPlan::cost(const std::array<std::int64_t, 3>& cells) const {
   std::size_t stage = kInner + 1 - order.size();
   for (const std::size_t axis : order) {
     iterations *= static_cast<double>(cells[axis]);
-    // factor 4, because the outer loop is not vectorised
+    // The factor 4 accounts for the outer loop not being vectorised.
     sum += iterations * cost_of(program.stages()[stage].steps) * (stage == kOuter ? 4 : 1);
     if (stage == kMiddle)
       sum += iterations * 8 * static_cast<double>(columns.size() + 4 * disjunctions.size() + 8 * cranks.size());

@@ -14,10 +14,11 @@
 
 namespace pkm::generic {
 
-/// Stages of the program, one per loop. Stage 0 does not depend on the swept coordinates.
+/// Stages of CellPlan::program, one for each loop. Stage 0 does not depend on the swept coordinates.
 inline constexpr std::size_t kOuter = 1, kMiddle = 2, kInner = 3;
 
-/// Immutable, shared by threads. Operands and registers are those of `program`.
+/// Plan of the test of voxels. The object is immutable, so that threads can share it. All operands and registers are
+/// those of `program`.
 struct CellPlan {
   using Registers = std::vector<std::uint32_t>;
   using Disjunction = std::vector<ColumnConstraint>;  ///< at least one of these constraints has to be satisfied
@@ -28,7 +29,8 @@ struct CellPlan {
     /// Registers of CrankRange::half_turn (>= 0 if the range is at most half a revolution) and CrankRange::reach (>= 0
     /// if the limb reaches the pose).
     std::uint32_t half_turn, reach;
-    /// true: the smaller of the two crank angles that assemble is the joint coordinate; false: the greater one.
+    /// true: of the two crank angles at which the limb assembles, the smaller one is the joint coordinate; false: the
+    /// greater one.
     bool is_first;
   };
 

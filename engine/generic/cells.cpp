@@ -24,7 +24,7 @@ std::size_t fill_centres(const VoxelGrid& grid, std::size_t axis, std::size_t fi
 /// @param word  index of the word
 std::uint64_t range_of_bits(double from, double to, std::size_t word) {
   const double first = static_cast<double>(word * 64);
-  const auto below = [&](double end) {  // bits before `end`
+  const auto below = [&](double end) {  // word with the bits before `end` set
     const double bits = std::clamp(end - first, 0.0, 64.0);
     return bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << static_cast<unsigned>(bits)) - 1;
   };
@@ -134,7 +134,7 @@ bool CellTest::find_ranges(const VoxelGrid& grid, std::size_t first, std::size_t
 CellTally CellTest::tally_of_ranges(const VoxelGrid& grid, std::size_t outer, std::size_t first, std::size_t count,
                                     const CellRanges& ranges) const {
   const auto cells = static_cast<double>(shape(grid)[2]);
-  double sum = 0, at_ends = 0;  // without branches, so that the loop over the columns is vectorised
+  double sum = 0, at_ends = 0;  // computed without branches, so that the loop over the columns is vectorised
   const auto number = [&](std::size_t j) { return std::max(ranges.to[j] - ranges.from[j], 0.0); };
   for (std::size_t j = 0; j < count; ++j) {
     sum += number(j);
@@ -219,7 +219,7 @@ void CellTest::clear_bits(const VoxelGrid& grid, std::size_t first, std::size_t 
     for (std::size_t k = 0; k < count * length; ++k) bits[k] &= scratch.in_range[i][k] | scratch.if_reached[i][k];
   }
   for (std::size_t j = 0; j < count; ++j) {
-    bool has_open_cells = false;  // true: a cell is left for which constraints of the inner loop have to be tested
+    bool has_open_cells = false;  // true: in at least one cell, constraints of the inner loop have to be tested
     for (std::size_t k = j * length; k < (j + 1) * length; ++k) {
       has_open_cells = has_open_cells || (!plan_.inner_constraints.empty() && bits[k] != 0);
       for (const auto& if_reached : scratch.if_reached)
@@ -233,7 +233,7 @@ void CellTest::clear_bits(const VoxelGrid& grid, std::size_t first, std::size_t 
 }
 
 void CellTest::test_cells(const VoxelGrid& grid, std::size_t first_column, std::size_t j, CellScratch& scratch) const {
-  static_assert(kRow == 64);  // because one batch of cells corresponds to one word of the bit set
+  static_assert(kRow == 64);  // one batch of cells corresponds to one word of the bit set
   const std::size_t cells = shape(grid)[2], length = words(cells);
   for (std::size_t word = 0; word < length; ++word) {
     std::uint64_t& bits = scratch.bits[(first_column + j) * length + word];

@@ -13,7 +13,8 @@
 
 namespace pkm::generic {
 
-/// Scratch memory of CellTest. Each bit set has one bit per cell, in CellTest::words() words per column.
+/// Scratch memory of CellTest. Each set of cells is stored with one bit per cell, in CellTest::words() words per
+/// column.
 struct CellScratch {
   std::vector<double> registers;
   expression::Rows middle_rows, rows;
@@ -73,7 +74,8 @@ class CellTest {
   /// Finds the cells of `count` columns that satisfy one constraint.
   void bits_of(const ColumnConstraint& constraint, const ColumnGrid& column_grid, std::size_t count,
                CellScratch& scratch, std::vector<std::uint64_t>& bits) const;
-  /// For the cells of `count` columns, finds scratch.in_range[crank] and scratch.if_reached[crank].
+  /// Computes scratch.in_range[crank] and scratch.if_reached[crank], sets of cells in the range of a crank, for the
+  /// cells of `count` columns.
   void find_crank_bits(std::size_t crank, const ColumnGrid& column_grid, std::size_t count, CellScratch& scratch) const;
   /// Tests the constraints of the inner loop in those cells of the column with index first + column whose bit is set,
   /// and clears the bits of infeasible cells.

@@ -10,7 +10,7 @@
 namespace pkm::generic {
 namespace {
 
-// outputs of the program per link: three coordinates of each end of its axis, and its radius
+// Number of program outputs for each link: three coordinates of each end of its axis, and its radius.
 constexpr std::size_t kNumbers = 7;
 
 template <class ValueOf>
@@ -90,7 +90,7 @@ ClosestPair<S> nearest_pair(const std::vector<Capsule<S>>& links, const std::vec
       const double apart = value_of(boxes[*k].lower[axis]) - value_of(boxes[*i].upper[axis]);
       if (apart - (value_of(links[*i].radius) + max_radius) > value_of(nearest.clearance)) break;
       const LinkPair pair{std::min(*i, *k), std::max(*i, *k)};
-      // the distance of the boxes is a lower bound
+      // The distance between the bounding boxes is a lower bound of the distance between the links.
       const double radii = value_of(links[pair.first].radius) + value_of(links[pair.second].radius);
       if (value_of(distance_of_bounds(boxes[pair.first], boxes[pair.second])) - radii > value_of(nearest.clearance))
         continue;

@@ -23,7 +23,8 @@ std::optional<double> clearance_of(const Model& model, const LimitSpec& limits);
 /// @param why  rest of the message, which begins with "mechanism NAME"
 void refuse_clearance(const Model& model, const LimitSpec& limits, const std::string& why);
 
-/// All links of a pose that assembles; empty if a position is undefined.
+/// The links of the mechanism as capsules, at a pose at which the mechanism assembles; empty if a position is
+/// undefined.
 /// @param inputs  values of the graph's inputs, including the pose
 template <class S>
 std::vector<Capsule<S>> capsules_at(const Evaluation& evaluation, const std::vector<S>& inputs);

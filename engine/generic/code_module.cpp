@@ -21,9 +21,8 @@ namespace {
 using expression::Node;
 using generic::Evaluation;
 
-// Minimum inverse condition number of the Jacobian at test poses, because rounding errors grow near singularities:
-// first choice in double and in single precision. If too few poses are found, lower values are tried, down to the last
-// one.
+// Minimum inverse condition number of the Jacobian at test poses in double and in single precision. Rounding errors
+// grow near singularities. If too few such poses are found, the number is lowered step by step down to the last value.
 constexpr double kMinConditioning = 2e-2, kMinConditioningOfFloats = 1e-1, kLeastConditioning = 1e-3;
 // distance in each coordinate [m, rad] between a test pose and the start of its forward kinematics
 constexpr double kStep = 1e-5;

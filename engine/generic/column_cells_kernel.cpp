@@ -56,8 +56,8 @@ bool contract(const ColumnConstraint& constraint, const double* registers, const
         to = select(discriminant >= discriminant, to, none);
       }
     } else {
-      // Roots of a z^2 + b z + c0 without cancellation: q / a and c0 / q, with q as below; the first one is infinite if
-      // a = 0.
+      // Compute the roots of a z^2 + b z + c0 without cancellation as q / a and c0 / q, with q as defined below. The
+      // root q / a is infinite if a = 0.
       const L a = load(c[2], k) + 0.0;
       const L discriminant = b * b - 4.0 * (a * c0), root = sqrt_or_zero(discriminant);
       const L q = (b + select(b < 0.0, -root, root)) * -0.5;

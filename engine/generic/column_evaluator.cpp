@@ -95,7 +95,8 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
     if (request_.needs_samples()) add_all_samples(0, S(1.0), parameters, samples, design, result);
   }
 
-  /// Samples the slice at every quadrature node of the outermost coordinates, and appends the samples to the result.
+  /// Samples the slice at every quadrature node of the outermost coordinates, and appends the resulting samples to the
+  /// result of the analysis.
   /// @param weight  product of the quadrature weights of the outermost coordinates whose index is less than `level`
   template <class S>
   void add_all_samples(std::size_t level, const S& weight, std::span<const S> parameters, SampleScratch<S>& samples,

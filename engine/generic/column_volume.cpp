@@ -151,14 +151,15 @@ SlicePlan ColumnVolume::choose_slices() const {
   const std::vector<double> inputs = inputs_of_default_design();
   IntegralScratch scratch;
   const SlicePlan* best = nullptr;
-  // limit of the search: number of interval operations, or of surfaces times slices, that takes about one second
+  // Limit of the work of the search: number of interval operations, or number of surfaces times number of slices. The
+  // limit corresponds to about one second.
   long least = has_curves ? 100'000'000 : 10'000'000;
   for (const SlicePlan& plan : plans_) {
     const auto per_slice = static_cast<long>(plan.surfaces.size() + 8 * plan.independent.back().size());
     NestedIntegral::Budget budget;
     (has_curves ? budget.operations : budget.evaluations) = has_curves ? least : std::max(1L, least / per_slice);
     const Integral<double> found = NestedIntegral(plan, tolerance).measure(inputs, scratch, budget);
-    // the work for an empty workspace says nothing about that for other designs
+    // If the workspace of this design is empty, the work gives no information about other designs.
     if (!has_curves && &plan == &first && found.value == 0) return first;
     const long work = has_curves ? scratch.column.operations : found.evaluations * per_slice;
     if (work >= least) continue;
@@ -208,12 +209,12 @@ Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, st
     found = corner_curves_->measure(inputs, scratch.corner_curves);
     if (found && needs_gradient) corner_curves_->add_gradient(by_input, scratch.corner_curves);
   }
-  // With outermost coordinates, samples have slices of their own.
+  // If there are outermost coordinates, samples are computed from slices of their own.
   if (found && (!needs_samples_ || has_outermost())) return *found;
   if (found && place_between_ranges(inputs, scratch)) return *found;
-  if (found) {  // the slices only place the nodes
+  if (found) {  // the volume is known, and the slices only place the nodes of samples
     const Integral<double> by_slices = slices().measure(inputs, scratch.integral, {.evaluations = kMaxSlicesForNodes});
-    // the error includes the part of the workspace that the slices, and thus the samples, have missed
+    // The error includes the part of the workspace that the slices, and therefore the samples, have missed.
     const double missed = std::fabs(found->value - by_slices.value);
     scratch.is_sampled = by_slices.evaluations >= kMaxSlicesForNodes;
     const double error = scratch.is_sampled ? missed : missed - by_slices.error;
@@ -222,7 +223,7 @@ Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, st
   const Integral<double> by_slices = needs_gradient ? slices().measure_for_gradient(inputs, scratch.integral)
                                                     : slices().measure(inputs, scratch.integral);
   if (needs_gradient) slices().add_gradient(by_input, scratch.integral);
-  // a single slice, without outer coordinates, is exact
+  // A volume that consists of a single slice, without outer coordinates, is exact.
   scratch.is_sampled = scratch.is_sampled || !slices().plan().order.outer.empty();
   return by_slices;
 }

@@ -1,6 +1,6 @@
-// Volume of a workspace by columns: from the edges of a solid or from corner curves, where these serve the constraints
-// and the design, and otherwise by nested quadrature over slices. More than three coordinates are integrated by an
-// outer quadrature.
+// Volume of a workspace by columns. It is computed by integrals along the edges of a solid or along corner curves, if
+// one of these methods supports the constraints and the design, and otherwise by nested quadrature over slices. If
+// there are more than three coordinates, an outer quadrature integrates over the additional ones.
 #pragma once
 
 #include <mutex>
@@ -50,7 +50,7 @@ class ColumnVolume {
   const NestedIntegral& slices() const;
   /// Prepares slices().for_each_node(). @param for_gradient  true: the nodes will have derivatives
   void place_nodes(std::span<const double> inputs, bool for_gradient, Scratch& scratch) const;
-  /// The quadrature over the coordinates beyond three.
+  /// The quadrature over the outermost coordinates, if the volume has more than three coordinates.
   const OuterQuadrature& outermost() const { return outermost_; }
   bool has_outermost() const { return !outermost_.coordinates().empty(); }
 
@@ -70,12 +70,13 @@ class ColumnVolume {
   double slice_tolerance_ = 0;
   mutable std::once_flag is_chosen_;
   mutable std::optional<NestedIntegral> slices_;
-  /// Plan of the volume from edges; absent if the workspace is no solid with edges.
+  /// Plan for computing the volume from edges; absent if the workspace is not a solid with edges.
   std::optional<edges::EdgePlan> edges_;
-  /// Volume by corner curves; absent if they cannot integrate any plan.
+  /// Computes the volume by corner curves; absent if corner curves cannot integrate the slices in any order of the
+  /// coordinates.
   std::optional<corner_curves::Volume> corner_curves_;
-  /// Corner curves of the plan of slices(), between whose ranges the nodes of samples lie; absent if no samples are
-  /// needed, or if they cannot integrate this plan.
+  /// Corner curves of the plan of slices(). The ends of their ranges divide the outer coordinate before the nodes of
+  /// samples are placed. Absent if no samples are needed, or if corner curves cannot integrate this plan.
   std::optional<corner_curves::Volume> ranges_for_nodes_;
 };
 

@@ -8,7 +8,7 @@
 namespace pkm::generic {
 namespace {
 
-// relative to Conic::scale: smaller coefficients of s^2 are treated as 0, because formulas divide by them
+// Coefficients of s^2 that are smaller, relative to Conic::scale, are treated as 0, because formulas divide by them.
 constexpr double kStraight = 1e-5;
 
 bool bends(const Conic& P) { return std::fabs(P.c[5]) > kStraight * P.scale; }
@@ -30,7 +30,8 @@ struct Moments {
 ///
 ///   w = (h/2 (1 - Y) u + c (1 - u^2)) / (1 - Y u^2),  dw/R = k du / (1 - Y u^2),  k = h (1 + Y) / s,  c = -k d / 4
 ///
-/// for u in [-1, 1]: rational functions of u, which a rule with 12 nodes integrates to the last digits for |Y| < 0.3.
+/// for u in [-1, 1]: the integrands are rational functions of u, which a Gauss rule with 12 nodes integrates to
+/// rounding accuracy for |Y| < 0.3.
 template <class RootAt>
 Moments moments(double h, double r, double r2, double curvature, const RootAt& root_at, double centre = 0,
                 int depth = 0) {
@@ -64,7 +65,7 @@ Moments moments_of(const Conic& P, const Arc& arc) {
   const auto q = P.discriminant();
   const double middle = 0.5 * (arc.from + arc.to);
   const double noise = 4e-15 * (std::fabs(q[0]) + std::fabs(q[1]) + std::fabs(q[2]));
-  // square root of q at w; 0 at an endpoint that is a root of q up to rounding errors
+  // Square root of q at w; 0 if w is an endpoint that is a root of q up to rounding errors.
   const auto root = [&](double w) {
     const double t = middle + w, square = q[0] + t * (q[1] + t * q[2]);
     return square > noise ? std::sqrt(square) : 0;
@@ -92,10 +93,11 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
     size = B.scale * A.scale;
   }
   const double d1 = std::fabs(d[2]) + std::fabs(d[4]);
-  if (std::fabs(d[0]) > std::fabs(d[1]) + std::fabs(d[3]) + d1 * (1 + 1e-9)) return 0;  // no intersection in the square
+  // In this case, the conics do not intersect in the square.
+  if (std::fabs(d[0]) > std::fabs(d[1]) + std::fabs(d[3]) + d1 * (1 + 1e-9)) return 0;
   if (d1 <= kNegligibleCoefficient * size) {
     if (std::fabs(d[1]) + std::fabs(d[3]) <= kNegligibleCoefficient * size)
-      return 0;  // no intersection, or identical conics
+      return 0;  // the conics do not intersect, or are identical
     const std::array<double, 3> of_t{d[0], d[1], d[3]};
     const std::size_t found = roots_between(of_t, at);
     for (std::size_t i = 0; i < found; ++i) {

@@ -84,7 +84,7 @@ void find_batch(const Evaluation& e, std::span<const double> registers, std::spa
     double* const row = rows + e.motion_batch->inputs()[i] * expression::kRow;
     const std::size_t position = inputs[i].position;
     const bool is_rate = position >= at.rate(0);
-    for (std::size_t k = 0; k < padded; ++k) {  // pad the batch with copies of the last state
+    for (std::size_t k = 0; k < padded; ++k) {  // fill the batch with copies of the last state
       const MotionState<double>& state = states[std::min(k, count - 1)];
       row[k] = is_rate ? state.velocity[position - at.rate(0)] : state.pose[position - at.coordinate(0)];
     }
@@ -104,7 +104,7 @@ void find_batch(const Evaluation& e, std::span<const double> registers, std::spa
 template <class S>
 void find_dynamics(const Evaluation& e, std::span<const S> parameters, std::size_t mode,
                    std::span<const MotionState<S>> states, std::span<PoseDynamics<S>> found) {
-  // minimum number of states for which a SIMD batch is faster than evaluating one state after the other
+  // Minimum number of states for which a SIMD batch is faster than evaluating the states one by one.
   constexpr std::size_t kMinBatch = 4;
   check_masses(e, parameters);
   const Inputs& at = e.model.inputs;

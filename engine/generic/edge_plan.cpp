@@ -126,7 +126,7 @@ EdgePlan::EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::ve
   std::vector<Node> constants, outputs;
   std::vector<bool> is_covered(known.all.size());
   for (const RodAndPathNodes& path : known.paths) {
-    // the vector v of the path is p + offset, where p consists of the swept coordinates
+    // Vector such that the vector v of the path is p + offset, where p consists of the swept coordinates.
     std::array<Node, 3> offset{};
     bool is_translation = graph[path.branch].is_number();
     for (std::size_t i = 0; i < 3 && is_translation; ++i) {

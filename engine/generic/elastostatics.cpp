@@ -128,7 +128,7 @@ class Energy {
   void add_beam(const BeamNodes& beam, const Loads& loads) {
     const Vector3d near = numbers_(beam.near), far = numbers_(beam.far);
     const double length = (far - near).norm();
-    if (length == 0) return;  // a slide that is fully retracted into its guide
+    if (length == 0) return;  // the slide is fully retracted into its guide
     const Vector3d u = (far - near) / length;
     Rows load = no_rows(), at_near = no_rows(), at_far = no_rows();
     for (const auto& [i, sign] : loads) {
@@ -213,12 +213,13 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
     supported = of_wrenches.matrixV().rightCols(6 - blocked);
   }
   if (supported.cols() == 0) return {AxisMatrix<double>(6, 0), {}};
-  // x = x_0 + N y, where N spans the null space of A, and y minimises the energy
+  // The unknowns are x = x_0 + N y, where N spans the null space of A and y minimises the energy.
   const MatrixXd x_0 = decomposition.solve(scaled_B * supported);
   const MatrixXd N = decomposition.matrixV().rightCols(A.cols() - rank);
   MatrixXd x = x_0;
   if (N.cols() > 0) {
-    // smaller eigenvalues are rounding errors: redundant forces that load rigid bodies only, and have no energy
+    // Smaller eigenvalues are rounding errors: they belong to redundant forces that load rigid bodies only and
+    // therefore have no energy.
     constexpr double kNoEnergy = 1e-13;  // relative to the largest element of the energy
     const Eigen::SelfAdjointEigenSolver<MatrixXd> of_energy(MatrixXd(N.transpose() * scaled_Q * N));
     const double threshold = kNoEnergy * scaled_Q.diagonal().maxCoeff();
@@ -229,7 +230,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
       x -= direction * (direction.transpose() * scaled_Q * x_0) / eigenvalue;
     }
   }
-  // convert scaled wrenches to orthonormal ones with units N and N m
+  // Convert the scaled wrenches to an orthonormal basis in the units N and N m.
   const MatrixXd wrenches = scale_wrench.asDiagonal() * supported;
   const MatrixXd basis =
       supported.cols() == 6

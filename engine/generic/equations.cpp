@@ -81,7 +81,7 @@ class Equations {
     return angle;
   }
 
-  /// Finds a function in functions_ by its partial derivatives, and adds it if there is none with the same ones.
+  /// Finds a function in functions_ by its partial derivatives, and adds it if no function has the same derivatives.
   /// @return its index; std::nullopt if the function is constant
   std::optional<std::size_t> index_of(const Derivatives& function) {
     std::vector<Node> key;

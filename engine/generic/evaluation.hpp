@@ -7,13 +7,14 @@
 
 namespace pkm::generic {
 
-/// Immutable; threads can share it.
+/// The programs that are compiled from the formulas of a mechanism file. The object is immutable, so that threads can
+/// share it.
 struct Evaluation {
   explicit Evaluation(Model source);
 
   Model model;
 
-  // Programs of a pose or of a state of motion. Their outputs are named after members of Model.
+  // Programs that depend on a pose or a state of motion. Comments name the members of Model that are their outputs.
   expression::Program constraints;  ///< outputs: joints, domains, margins, angles
   expression::Program reported;     ///< outputs: ReportedMargin::shown, quantities
   expression::Program joints, closures, links, origin, rods;
@@ -32,8 +33,8 @@ struct Evaluation {
   /// coordinate.
   std::vector<expression::Program> lower, upper, default_values, reach_lower, reach_upper;
 
-  /// Writes the threshold of each limit: that of `limits` if it is given there, otherwise the one that the mechanism
-  /// derives from the parameters, otherwise one that every pose satisfies.
+  /// Writes the threshold of each limit: the threshold in `limits` if it is given there; otherwise the threshold that
+  /// the mechanism derives from the parameters; otherwise a threshold that every pose satisfies.
   template <class S>
   void thresholds(std::span<const S> parameters, const LimitSpec& limits, std::span<S> values) const;
   /// Writes the values of the graph's inputs for a design; those of coordinates and joints are 0.
@@ -57,10 +58,11 @@ struct Evaluation {
   /// Range of a coordinate in the search box of the file; std::nullopt if the file does not define it.
   std::optional<std::array<double, 2>> range(std::span<const double> parameters, const LimitSpec& limits,
                                              std::size_t mode, std::size_t coordinate) const;
-  /// Range of a coordinate, as range(); throws std::invalid_argument with a message if the file does not define it.
+  /// Like range(), but throws std::invalid_argument with a message if the file does not define the range.
   std::array<double, 2> required_range(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
                                        std::size_t coordinate) const;
-  /// Search box of a workspace analysis, by axis: that of the plan, otherwise the ranges of the swept coordinates.
+  /// Search box of a workspace analysis, by axis: the box of the plan or, if it has none, the ranges of the swept
+  /// coordinates.
   Box search_box(std::span<const double> parameters, const WorkspacePlan& plan, std::size_t mode,
                  const std::vector<int>& swept) const;
 };

@@ -67,7 +67,8 @@ class ExactAccuracy {
   bool find_pose(const AxisVector<double>& joints, const AxisMatrix<double>& J, Pose<double> pose,
                  std::vector<double>& inputs) const {
     constexpr int kMaxSteps = 100;
-    // convergence criterion: once steps are below this size [m, rad], the method ends as soon as they no longer shrink
+    // Convergence criterion [m, rad]: once the steps are smaller than this, the method ends as soon as they do not
+    // become smaller any more.
     constexpr double kConverged = 1e-9;
     double last = std::numeric_limits<double>::infinity();
     for (int step = 0; step < kMaxSteps; ++step) {

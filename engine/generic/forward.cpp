@@ -68,7 +68,8 @@ struct Solution {
 Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
   constexpr int kMaxIterations = 60, kMaxHalvings = 10;
   constexpr double kMaxStep = 0.5;  // maximum step in a coordinate, relative to 1 + |coordinate| [m, rad]
-  // relative step size below which the iteration ends as soon as steps no longer shrink by half
+  // Once the relative step size is smaller than this, the iteration ends as soon as the steps do not shrink by half any
+  // more.
   constexpr double kConverged = 1e-9;
   double last_size = std::numeric_limits<double>::infinity();
   AxisVector<double> f = closure.at(pose);
@@ -80,7 +81,7 @@ Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
     for (std::size_t k = 0; k < pose.size(); ++k) size = std::max(size, std::fabs(step[k]) / (1 + std::fabs(pose[k])));
     double factor = std::min(1.0, kMaxStep / std::max(size, 1e-300));
     const Pose<double> previous = pose;
-    // halve the step until all residuals are finite
+    // Halve the step until all residuals are finite.
     for (int halvings = 0; halvings < kMaxHalvings; ++halvings, factor /= 2) {
       pose = previous + step * factor;
       f = closure.at(pose);
@@ -222,8 +223,8 @@ std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const dou
   std::vector<LoopClosure> closures;  // one element for each working mode of modes_of_closures()
   for (const std::size_t mode : modes_of_closures(e.model)) {
     LoopClosure& of_mode = closures.emplace_back(e, parameters, joints, mode);
-    // number of consecutive starts that found no new pose, without those at which the loop-closure equations are
-    // undefined
+    // Number of consecutive starts that found no new pose, not counting starts at which the loop-closure equations are
+    // undefined.
     std::size_t idle = 0;
     for (std::size_t tried = 0; tried < kMaxStarts && idle < kMaxIdleStarts; ++tried) {
       const Solution solution = solve_closures(of_mode, poses[tried]);
@@ -231,7 +232,7 @@ std::vector<AssemblyMode> assemblies_of(const Evaluation& e, std::span<const dou
       if (solution.pose && found.add(*solution.pose)) idle = 0;
     }
   }
-  // the set grows in this loop, so that mirror images of mirror images are included
+  // The set grows in this loop, so that mirror images of mirror images are also added.
   for (std::size_t k = 0; k < found.modes().size(); ++k)
     if (const auto start = found.mirrored(k))
       for (LoopClosure& of_mode : closures)

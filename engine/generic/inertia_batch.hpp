@@ -26,7 +26,7 @@ class InertiaBatch {
   /// is called.
   void add(const Pose<double>& pose, InertiaScratch& scratch, WorkspaceResult<double>& to) const;
   void finish(InertiaScratch& scratch, WorkspaceResult<double>& to) const;
-  /// Variants with derivatives, which evaluate one pose after the other.
+  /// Overloads for poses with derivatives. They evaluate the poses one after the other, without SIMD.
   void start(const std::vector<Dual4>& inputs, InertiaScratch& scratch) const;
   void add(const Pose<Dual4>& pose, InertiaScratch& scratch, WorkspaceResult<Dual4>& to) const;
   void finish(InertiaScratch&, WorkspaceResult<Dual4>&) const {}

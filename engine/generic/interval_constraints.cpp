@@ -63,7 +63,7 @@ Node without_acos(Graph& graph, Node constraint, const std::vector<Interval>& in
   if (!entry.operation || entry.operation->code != Code::subtract) return constraint;
   const auto [left, right] = std::pair(entry.arguments[0], entry.arguments[1]);
   const auto is_acos = [&](Node node) { return graph[node].operation && graph[node].operation->name == "acos"; };
-  // true: the constraint is c - acos(u) >= 0; false: it is acos(u) - c >= 0
+  // is_upper: true if the constraint is c - acos(u) >= 0; false if it is acos(u) - c >= 0
   const bool is_upper = is_acos(right) && is_value_of_acos(graph, left, inputs);
   if (!is_upper && !(is_acos(left) && is_value_of_acos(graph, right, inputs))) return constraint;
   const Term cosine = cos(Term(graph, is_upper ? left : right));

@@ -23,7 +23,7 @@ namespace {
 using Eigen::Index, Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d;
 using VectorNodes = std::array<Node, 3>;
 
-constexpr double kRankThreshold = 1e-9;  // relative to the maximum singular value: smaller singular values count as 0
+constexpr double kRankThreshold = 1e-9;  // singular values that are smaller, relative to the largest one, count as 0
 
 Eigen::JacobiSVD<MatrixXd> decomposed(const MatrixXd& A) {
   Eigen::JacobiSVD<MatrixXd> decomposition(A, Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -13,7 +13,7 @@ namespace pkm::generic {
 
 /// Degrees of freedom of the platform that the joints allow if the drives move freely.
 struct PlatformMobility {
-  std::size_t of_joints;  ///< dimension of the space of platform twists that the joints allow, with free drives
+  std::size_t of_joints;  ///< number of independent platform twists that the joints allow, with free drives
   /// Dimension of the space of those platform twists that changes of the coordinates produce; std::nullopt if the ends
   /// of the limbs are given by formulas that are inconsistent with the motion of the platform frame.
   std::optional<std::size_t> of_coordinates;

@@ -129,37 +129,38 @@ struct ArmNodes {
 /// A coordinate of the platform that follows from the coordinates of the pose.
 struct DependentCoordinate {
   std::string name, unit;
-  std::string kind;  ///< "along x", "about z"
+  std::string kind;  ///< direction of the motion, such as "along x" or "about z"
   Node node{};
 };
 
 /// A frame of the mechanism file.
 struct FrameInfo {
   std::string name;
-  std::string on;   ///< the frame in which it is defined
-  bool is_movable;  ///< whether it moves relative to that frame
+  std::string on;   ///< name of the frame relative to which it is defined
+  bool is_movable;  ///< true if it moves relative to the frame `on`
 };
 
 /// A rigid body. Twice its kinetic energy is the sum of the terms below; ' is the time derivative.
 struct BodyNodes {
-  /// The term weight f' . g' of 2 T, for the vectors f and g.
+  /// The term weight f' . g' of twice the kinetic energy, for the vectors f and g.
   struct Product {
     std::array<Node, 3> f, g;
     Node weight;
   };
-  /// The term weight q'^2 of 2 T, for the angle q of an arm.
+  /// The term weight q'^2 of twice the kinetic energy, for the angle q of an arm.
   struct ArmRotation {
     std::size_t arm;
     Node weight;
   };
-  /// The term weight |d x d'|^2 / |d|^4 of 2 T, for a slender body along the vector d that does not spin about d.
+  /// The term weight |d x d'|^2 / |d|^4 of twice the kinetic energy, for a slender body along the vector d that does
+  /// not spin about d.
   struct LineRotation {
     std::array<Node, 3> d;
     Node weight;
   };
   std::string name;
   Node mass;
-  std::array<Node, 3> centre;  ///< centre of mass
+  std::array<Node, 3> centre;  ///< position of the centre of mass in the base frame [m]
   std::vector<Product> products;
   std::vector<ArmRotation> arm_rotations;
   std::vector<LineRotation> line_rotations;
@@ -190,7 +191,7 @@ struct SolidNodes {
   std::optional<std::array<Node, 3>> line{};
   /// Offset of the solid's centre of mass from that of `bodies`; std::nullopt: there is none.
   std::optional<std::array<Node, 3>> centre_offset{};
-  bool with_platform = false;  ///< true: the body is the platform
+  bool with_platform = false;  ///< true: the solid is the platform
   /// Rotation of the platform or of a [[frame]], by rows; std::nullopt: the body rotates with `line`, if at all.
   std::optional<std::array<std::array<Node, 3>, 3>> rotation{};
 
@@ -321,8 +322,8 @@ struct Model {
   std::vector<LinkNodes> links;
   std::vector<LinkPair> link_pairs;       ///< pairs of indices of links whose clearance is tested
   std::vector<std::size_t> moving_links;  ///< indices of the links whose clearance from obstacles is tested
-  /// Index of the clearance limit among MechanismInfo::limits; std::nullopt if there is none. It has no input in the
-  /// graph, and follows the limits that have one.
+  /// Index of the clearance limit among MechanismInfo::limits; std::nullopt if there is none. The clearance limit is
+  /// not an input of the graph, and is listed after all limits that are inputs.
   std::optional<std::size_t> clearance_limit;
   std::vector<RodNodes> rods;  ///< rods of those limbs that have one
 
@@ -336,8 +337,8 @@ struct Model {
   std::optional<JointedBodies> jointed;             ///< present if the file describes all joints
   /// Minimum and maximum tension [N] of the cable that drives a joint, by joint; std::nullopt: it is no cable.
   std::vector<std::optional<std::array<Node, 2>>> tensions;
-  /// How redundant drives share a load, and the forces by which it divides theirs, by joint; empty: by the same for
-  /// all.
+  /// How redundant drives share a load, and the force or torque by which that of each drive is divided in the norm that
+  /// is minimised, by joint; empty: equal for all drives.
   ForceSharing sharing = ForceSharing::least_norm;
   std::vector<Node> force_scales;
   /// Peak force or torque of each drive [N, N m], by joint; empty if the file defines none.

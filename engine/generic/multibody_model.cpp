@@ -21,7 +21,7 @@ using Type = MultibodyModel::JointType;
 
 constexpr double kParallelAxes = 1e-9;      // axes count as parallel if the sine of their angle is at most this
 constexpr double kSameMotion = 1e-7;        // velocities whose relative difference is smaller are equal
-constexpr double kRankOfVelocities = 1e-9;  // relative to the largest pivot: smaller pivots count as 0
+constexpr double kRankOfVelocities = 1e-9;  // pivots that are smaller, relative to the largest pivot, count as 0
 
 Vector3d eigen(const Vector<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
@@ -43,7 +43,7 @@ struct Connection {
 
 /// A unit vector normal to `line`, as close to the direction `preferred` as possible.
 Vector3d normal_to(const Vector3d& line, const Vector3d& preferred) {
-  // if the sine of the angle between `line` and `preferred` is smaller, the x or y axis is used instead of `preferred`
+  // If the sine of the angle between `line` and `preferred` is smaller, the x or y axis is used instead of `preferred`.
   constexpr double kOblique = 0.1;
   const Vector3d u = line.normalized();
   for (const Vector3d& wanted : {preferred, Vector3d(Vector3d::UnitX()), Vector3d(Vector3d::UnitY())})
@@ -190,7 +190,7 @@ class MultibodyBuilder {
     for (std::size_t row = 0; row < 3; ++row)
       for (std::size_t k = 0; k < 3; ++k)
         added.inertia(static_cast<Index>(row), static_cast<Index>(k)) = body.inertia(row, k);
-    // the body does not rotate, so that the equations of motion do not contain its inertia
+    // The body does not rotate, so that the equations of motion do not contain its inertia.
     if (!solid.rotation && !solid.line)
       for (const std::size_t part : solid.bodies)
         if (const auto& own = model_.bodies[part].inertia) added.inertia.diagonal() += at_pose(*own) * solid.share;

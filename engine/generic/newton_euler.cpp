@@ -185,7 +185,7 @@ class System {
 
   /// Orthonormal basis of the orthogonal complement of the axes (Gram-Schmidt).
   static std::vector<Vec> normal_to(const std::vector<Vec>& axes) {
-    // vectors whose component normal to the axes is shorter are parallel to the axes
+    // Vectors whose component normal to the axes is shorter count as parallel to the axes.
     constexpr double kParallel = 1e-9;
     std::vector<Vec> span, complement;
     const auto normal_part = [&](Vec v) {

@@ -8,7 +8,7 @@
 namespace pkm::generic {
 namespace {
 
-// for tolerances of at least this value, the subdivision begins with a single subinterval.
+// If the tolerance is at least this, the subdivision begins with a single subinterval.
 constexpr double kCoarse = 1e-5;
 constexpr std::size_t kMaxCells = 100;
 

@@ -36,7 +36,7 @@ bool has_one_sign(std::span<const double> c) {
   static constexpr int kBinomial[5][5] = {
       {1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}, {1, 2, 1, 0, 0}, {1, 3, 3, 1, 0}, {1, 4, 6, 4, 1}};
   static const auto table = [] {
-    // b[n][k][j]: for degree n, contribution of x^j to the Bernstein coefficient with index k
+    // b[n][k][j]: contribution of x^j to the Bernstein coefficient with index k of a polynomial of degree n
     std::array<std::array<std::array<double, 5>, 5>, 5> b{};
     for (int n = 0; n < 5; ++n)
       for (int k = 0; k <= n; ++k)

@@ -17,7 +17,8 @@ std::vector<int> all_coordinates(const Model& model) {
   return all;
 }
 
-/// The given nodes, followed by those that decide whether a pose assembles: joint coordinates and constraints.
+/// The given nodes, followed by the nodes that determine whether the mechanism assembles at a pose: joint coordinates
+/// and constraints.
 std::vector<Node> with_assembly(const Model& model, std::vector<Node> values) {
   values.insert(values.end(), model.joints.begin(), model.joints.end());
   for (const Result& domain : model.domains) values.push_back(domain.node);

@@ -17,7 +17,8 @@ struct PoseBatchScratch {
   std::size_t count = 0;  ///< number of poses in the batch
 };
 
-/// Immutable; threads can share it if each has its own scratch memory.
+/// Evaluates nodes of the model's graph at batches of poses. The object is immutable; threads can share it if each has
+/// its own scratch memory.
 class PoseBatch {
  public:
   /// @param outputs  nodes of the model's graph to be evaluated
@@ -33,7 +34,7 @@ class PoseBatch {
   /// @return number of poses with the padding, a multiple of kLanes
   std::size_t run(PoseBatchScratch& scratch) const;
 
-  /// Counterpart without SIMD for a single pose and any scalar type S; the results are in the registers outputs().
+  /// Evaluates a single pose without SIMD, for any scalar type S. The results are in the registers outputs().
   template <class S>
   void start(std::span<const S> inputs, std::vector<S>& registers) const {
     registers.resize(program_.registers());

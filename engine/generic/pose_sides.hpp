@@ -1,5 +1,5 @@
-// Side of the singularities on which poses lie, for a mechanism file: constraints and Jacobian are evaluated in SIMD
-// batches.
+// Determines the side of the singularities on which poses of a mechanism file lie. Constraints and Jacobian are
+// evaluated in SIMD batches.
 #pragma once
 
 #include <memory>

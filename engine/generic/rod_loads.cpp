@@ -14,7 +14,7 @@ using Vec = Vector<double, 3>;
 
 /// Component of a joint's force along the unit vector u; std::nullopt if the equilibrium equations do not determine it.
 std::optional<double> along(const Vec& u, const std::array<std::optional<double>, 3>& force) {
-  // smaller components of u count as 0, so that undetermined force components normal to u have no effect
+  // Components of u that are smaller count as 0, so that undetermined force components normal to u have no effect.
   constexpr double kNormal = 1e-9;
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -27,7 +27,7 @@ std::optional<double> along(const Vec& u, const std::array<std::optional<double>
 
 /// The rods of a model, and the nodes of the numbers that their loads depend on.
 struct Rods {
-  // numbers per rod: three coordinates of each end, E I, and the area
+  // Number of values for each rod: three coordinates of each end, E I, and the area.
   static constexpr std::size_t kNumbers = 8;
   std::vector<std::size_t> solids;
   std::vector<Node> nodes;

@@ -1,4 +1,4 @@
-// Pose quantities that are given by formulas at the samples of a workspace analysis, in SIMD batches.
+// Evaluates pose quantities that are given by formulas, at the samples of a workspace analysis, in SIMD batches.
 #pragma once
 
 #include "engine/generic/pose_batch.hpp"
@@ -24,7 +24,7 @@ class SampleFormulas {
   /// when the batch is full or finish() is called.
   void add(const Pose<double>& pose, FormulaScratch& scratch, WorkspaceResult<double>& to) const;
   void finish(FormulaScratch& scratch, WorkspaceResult<double>& to) const;
-  /// Variants with derivatives, which evaluate one pose after the other.
+  /// Overloads for poses with derivatives. They evaluate the poses one after the other, without SIMD.
   void start(const std::vector<Dual4>& inputs, FormulaScratch& scratch) const {
     batch_.start<Dual4>(inputs, scratch.dual_registers);
   }

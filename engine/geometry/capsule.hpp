@@ -70,7 +70,8 @@ S segment_distance(const Segment<S>& a, const Segment<S>& b) {
   } else {
     const Point3<S> n = cross(u, v);
     const S nn = dot(n, n);
-    if (value_of(nn) > 0) s = ratio(dot(cross(r, v), n), nn);  // otherwise parallel: any s is a valid start
+    // If nn = 0, the segments are parallel, and any s in [0, 1] is a valid start.
+    if (value_of(nn) > 0) s = ratio(dot(cross(r, v), n), nn);
     t = (uv * s - vr) / vv;
     if (!(value_of(t) >= 0)) {
       t = zero;
@@ -163,8 +164,8 @@ bool respects_clearance(const Capsules& all, const Pairs& pairs, double minimum,
   for (std::size_t i = 0; i < all.size(); ++i) box[i] = bounds_of(all[i].axis);
   for (const LinkPair& pair : pairs) {
     const Capsule<double>&a = all[pair.first], &b = all[pair.second];
-    // skip pairs whose bounding boxes are far enough apart; the margin covers rounding errors
-    constexpr double kRounding = 1e-9;  // [m]
+    // Skip pairs whose bounding boxes are far enough apart. The tolerance kRounding [m] covers rounding errors.
+    constexpr double kRounding = 1e-9;
     if (distance_of_bounds(box[pair.first], box[pair.second]) - (a.radius + b.radius) > minimum + kRounding) continue;
     if (capsule_distance(a, b) < minimum) return false;
   }

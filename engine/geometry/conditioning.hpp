@@ -25,7 +25,7 @@ namespace pkm {
 /// @param m  columns, m[column][row]; overwritten
 template <int N, class S>
 S inverse_condition(S (&m)[N][N]) {
-  constexpr int kMaxSweeps = 30;         // 4 or 5 are enough in practice
+  constexpr int kMaxSweeps = 30;         // limit of the number of sweeps; 4 or 5 are enough in practice
   constexpr double kOrthogonal = 1e-15;  // columns with a smaller cosine between them count as orthogonal
   const auto dot = [&](int i, int j) {
     S sum = m[i][0] * m[j][0];
@@ -38,7 +38,8 @@ S inverse_condition(S (&m)[N][N]) {
       for (int j = i + 1; j < N; ++j) {
         const S aa = dot(i, i), bb = dot(j, j), ab = dot(i, j);
         const double scale = value_of(aa) * value_of(bb), product = value_of(ab) * value_of(ab);
-        if (!(product > kOrthogonal * kOrthogonal * scale)) continue;  // also skips NaN
+        // Skips orthogonal columns, and columns whose product is NaN.
+        if (!(product > kOrthogonal * kOrthogonal * scale)) continue;
         rotated = true;
         const S zeta = (bb - aa) / (ab * 2.0);
         const S root = sqrt(S(zeta * zeta + 1.0));

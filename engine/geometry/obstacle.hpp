@@ -43,7 +43,7 @@ using Obstacles = std::vector<Obstacle>;
 /// The t in [0, 1] at which the point from + t way of a segment is closest to a box centred at the origin with half
 /// sizes `half`.
 inline double closest_to_box(const Point3<double>& from, const Point3<double>& way, const Point3<double>& half) {
-  const auto derivative = [&](double t) {  // derivative of |e|^2 / 2
+  const auto derivative = [&](double t) {  // derivative of half the squared distance from the box
     double sum = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const double x = from[i] + t * way[i];
@@ -51,7 +51,8 @@ inline double closest_to_box(const Point3<double>& from, const Point3<double>& w
     }
     return sum;
   };
-  std::array<double, 7> breakpoints{};  // values of t at which the segment crosses a face plane, in ascending order
+  // Values of t at which the segment crosses planes of the box's faces, in ascending order.
+  std::array<double, 7> breakpoints{};
   std::size_t count = 0;
   for (std::size_t i = 0; i < 3; ++i)
     for (const double face : {-half[i], half[i]})
@@ -150,8 +151,8 @@ bool respects_obstacle_clearance(const Obstacles& obstacles, const Capsules& all
     const Capsule<double>& body = all[link];
     const Bounds<double> bounds = bounds_of(body.axis);
     for (const Obstacle& obstacle : obstacles) {
-      // skip obstacles whose bounding box is far enough away; the margin covers rounding errors
-      constexpr double kRounding = 1e-9;  // [m]
+      // Skip obstacles whose bounding box is far enough away. The tolerance kRounding [m] covers rounding errors.
+      constexpr double kRounding = 1e-9;
       double apart;
       if (const auto* const box = std::get_if<SolidBox>(&obstacle.shape)) {
         apart = distance_of_bounds(bounds, box->bounds());

@@ -52,7 +52,7 @@ bool is_singular(const M& J, const M& eliminated) {
     for (std::size_t i = 0; i < n; ++i) {
       double sum = 0;
       for (std::size_t j = 0; j < n; ++j) sum += std::fabs(m(i, j));
-      if (!(sum <= max)) max = sum;  // propagates NaN
+      if (!(sum <= max)) max = sum;  // also true if the sum is NaN, so that the maximum becomes NaN
     }
     return max;
   };

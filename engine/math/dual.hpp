@@ -55,10 +55,11 @@ struct alignas(16) Components {
 template <int N>
 struct Dual {
   double a = 0;     ///< value
-  Components<N> v;  ///< gradient
+  Components<N> v;  ///< gradient: the N partial derivatives
 
   [[gnu::always_inline]] Dual() {}
-  [[gnu::always_inline]] Dual(double value) : a(value) {}  // not explicit: constants mix with duals in formulas
+  /// This constructor is not explicit, because formulas combine constants and dual numbers.
+  [[gnu::always_inline]] Dual(double value) : a(value) {}
   [[gnu::always_inline]] Dual(double value, const Components<N>& derivatives) : a(value), v(derivatives) {}
   /// The independent variable number `index` with the given value: its gradient is the unit vector number `index`.
   static Dual variable(double value, int index) {
@@ -85,7 +86,7 @@ struct Dual {
     const double quotient = x.a / y.a, inverse = 1 / y.a;
     return {quotient, (x.v - y.v * quotient) * inverse};
   }
-  // One operand is a constant.
+  // Operations with a constant, which has no derivatives.
   [[gnu::always_inline]] friend Dual operator+(const Dual& x, double y) { return {x.a + y, x.v}; }
   [[gnu::always_inline]] friend Dual operator+(double x, const Dual& y) { return {x + y.a, y.v}; }
   [[gnu::always_inline]] friend Dual operator-(const Dual& x, double y) { return {x.a - y, x.v}; }

@@ -1,4 +1,5 @@
-// Decompositions of dense matrices of any size by Eigen, compiled only once, in eigen_solvers.cpp: each takes seconds.
+// Declares decompositions of dense matrices of any size by Eigen. They are compiled only once, in eigen_solvers.cpp,
+// because compiling each takes seconds.
 #pragma once
 
 #include <Eigen/Eigenvalues>

@@ -1,5 +1,5 @@
 // 64-bit hash for comparing data structures within one run, such as combinatorial types. Stored data do not depend on
-// it.
+// the hash.
 #pragma once
 
 #include <cstdint>

@@ -184,7 +184,7 @@ Interval cos(const Interval& x) { return sinusoid(cosine_at, x, 0); }
 
 Interval tan(const Interval& x) {
   const Interval c = cos(x);
-  if (x.is_empty() || !c.holds(0))  // no pole in x, so the tangent is increasing
+  if (x.is_empty() || !c.holds(0))  // there is no pole in x, so that the tangent is increasing
     return increasing([](double at) { return sine_at(at) / cosine_at(at); }, x);
   return Interval::everything(Decoration::partial);
 }

@@ -31,7 +31,7 @@ struct Interval {
 
   Interval() = default;
   /// The interval [value, value]; empty (undefined) if the value is not finite.
-  Interval(double value) {  // not explicit: constants mix with intervals in formulas
+  Interval(double value) {  // not explicit, because formulas combine constants and intervals
     *this = std::isfinite(value) ? Interval(value, value) : empty();
   }
   Interval(double from, double to, Decoration known = Decoration::continuous)
@@ -52,7 +52,7 @@ struct Interval {
   bool is_continuous() const { return decoration == Decoration::continuous; }
   bool holds(double value) const { return lower <= value && value <= upper; }
   double width() const { return upper - lower; }
-  /// A number in the interval: approximately the midpoint; an arbitrary finite number if the interval is unbounded.
+  /// A number in the interval: approximately its midpoint, or an arbitrary finite number if the interval is unbounded.
   double middle() const;
 
   /// Certified: the formula is defined and >= 0 for all arguments.

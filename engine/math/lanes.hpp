@@ -29,7 +29,7 @@ struct Lanes {
   Register part[kLanes / W];
 
   [[gnu::always_inline]] Lanes() {}
-  [[gnu::always_inline]] Lanes(double x) {  // not explicit: constants mix with lanes in formulas
+  [[gnu::always_inline]] Lanes(double x) {  // not explicit, because formulas combine constants and lanes
     for (Register& p : part) p = Register{} + x;
   }
   [[gnu::always_inline]] static Lanes load(const double* from) {

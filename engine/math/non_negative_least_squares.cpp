@@ -28,7 +28,8 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
   std::vector<bool> in_passive_set(n, false);
   for (std::size_t step = 0; step < 10 * n + 10; ++step) {
     Eigen::VectorXd residual = target;
-    double magnitude = target.norm() + 1e-300;  // of the terms of the residual, which determines its rounding errors
+    // Magnitude of the terms of the residual, which determines its rounding errors.
+    double magnitude = target.norm() + 1e-300;
     for (std::size_t k = 0; k < n; ++k) {
       double square = 0;
       for (std::size_t i = 0; i < rows; ++i) {
@@ -65,7 +66,8 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
         const double to = trial(static_cast<Eigen::Index>(k)), from = x[passive[k]];
         if (to <= 0) step_length = std::min(step_length, from / (from - to));
       }
-      if (!(step_length >= 0)) step_length = 0;  // 0/0: the entering column is linearly dependent
+      // If the step length is 0/0, the entering column is linearly dependent on the others.
+      if (!(step_length >= 0)) step_length = 0;
       for (std::size_t k = 0; k < passive.size(); ++k)
         x[passive[k]] += step_length * (trial(static_cast<Eigen::Index>(k)) - x[passive[k]]);
       if (step_length == 1) break;

@@ -55,7 +55,7 @@ class NonNegativeIntervals {
   }
 
  private:
-  // All relative to the length of the whole interval. An undecided subinterval is bisected until its width is at most
+  // All lengths are relative to the whole interval. An undecided subinterval is bisected until its width is at most
   // kMaxWidth. Minima of |f| and roots of f are located to the two tolerances.
   static constexpr double kMaxWidth = 1.0 / 16, kMinimumTolerance = 1e-6, kRootTolerance = 1e-13;
 

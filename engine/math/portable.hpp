@@ -106,7 +106,7 @@ inline double exp(double x) {
   constexpr double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
   const double k = std::nearbyint(x * 1.44269504088896340736);
   const double r = (x - k * ln2_high) - k * ln2_low;
-  double sum = 1.0 / 6227020800.0;  // 1/13!
+  double sum = 1.0 / 6227020800.0;  // coefficient of the highest power of the series: 1/13!
   for (const double inverse : {1.0 / 479001600.0, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040,
                                1.0 / 720, 1.0 / 120, 1.0 / 24, 1.0 / 6, 0.5})
     sum = inverse + r * sum;
@@ -118,7 +118,7 @@ inline double log(double x) {
   if (!(x > 0)) return x == 0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
   if (x == std::numeric_limits<double>::infinity()) return x;
   int exponent = 0;
-  double m = std::frexp(x, &exponent);  // [0.5, 1)
+  double m = std::frexp(x, &exponent);  // mantissa of x, in [0.5, 1)
   if (m < 0.70710678118654752440) {
     m *= 2;
     --exponent;

@@ -21,8 +21,8 @@ double max_step(const Eigen::VectorXd& value, const Eigen::VectorXd& change) {
 
 QuadraticSolution solve(const QuadraticProgram& program) {
   constexpr int kMaxIterations = 60;
-  // upper limits of the mean complementarity product and of the residuals at the solution; most programs reach them in
-  // 10 to 25 iterations
+  // Upper limits of the mean complementarity product and of the residuals at the solution; most programs reach them in
+  // 10 to 25 iterations.
   constexpr double kGap = 1e-17, kResidual = 1e-14;
   const Eigen::MatrixXd &B = program.B, &A = program.A;
   const Eigen::VectorXd &c = program.c, &b = program.b;
@@ -39,11 +39,11 @@ QuadraticSolution solve(const QuadraticProgram& program) {
       min_error = error;
       best = {x, multipliers};
     } else if (gap < kGap) {
-      break;  // stop: from here on, rounding errors only increase the error of the iterates
+      break;  // stop, because from here on rounding errors only increase the error of the iterates
     }
     if (gap < kGap && residual < kResidual) break;
     const Eigen::VectorXd ratio = multipliers.cwiseQuotient(slack);
-    // Products of small matrices: without the blocking that Eigen uses for large ones.
+    // lazyProduct() avoids the blocking that Eigen uses for large matrices, because these matrices are small.
     const Eigen::LDLT<Eigen::MatrixXd> matrix((B + A.transpose().lazyProduct((ratio.asDiagonal() * A).eval())).eval());
     Eigen::VectorXd dx, dslack, dmultipliers;
     const auto step_for = [&](const Eigen::VectorXd& complementarity) {

@@ -16,7 +16,7 @@
 
 namespace pkm {
 
-/// U(y) above, for y < 1.
+/// The function U(y) defined above, for y < 1.
 template <class S>
 S root_integral_series(const S& y) {
   if (std::fabs(value_of(y)) <= 1.0 / 16) {  // 12 terms: the truncation error is below 2^-53
@@ -37,7 +37,7 @@ S root_integral_series(const S& y) {
 template <class S>
 S sqrt_quadratic_integral(const S& length, const S& at_from, const S& at_to, const S& curvature) {
   const S sum = at_from + at_to, difference = at_to - at_from;
-  if (!(value_of(sum) > 0)) return S(0.0);  // both endpoint values are 0: an interval of length 0
+  if (!(value_of(sum) > 0)) return S(0.0);  // both endpoint values are 0: the interval has the length 0
   const S square = sum * sum, y = curvature * length * length / square, U = root_integral_series(y);
   return length * 0.25 / sum * (square * (2.0 - y * U) + difference * difference * U);
 }

@@ -14,12 +14,12 @@ namespace pkm {
 
 /// Value and the first two derivatives with respect to time.
 struct Taylor {
-  double a = 0;   ///< value
+  double a = 0;   ///< value of the function
   double d = 0;   ///< first derivative
   double dd = 0;  ///< second derivative
 
   Taylor() = default;
-  Taylor(double value) : a(value) {}  // not explicit: constants mix with it in formulas
+  Taylor(double value) : a(value) {}  // not explicit, because formulas combine constants and Taylor numbers
   Taylor(double value, double first, double second) : a(value), d(first), dd(second) {}
   /// The independent variable.
   static Taylor variable(double value) { return {value, 1, 0}; }

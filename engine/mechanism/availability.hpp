@@ -1,5 +1,5 @@
-// Availability of pose quantities for a mechanism. The conditioning requires consistent units and enough drives;
-// quantities derived from the joint-space inertia require dynamics.
+// Determines which pose quantities are defined for a mechanism. The conditioning requires consistent units and enough
+// drives; quantities derived from the joint-space inertia require dynamics.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"

@@ -59,7 +59,7 @@ struct Module {
   expression::Graph graph;
   std::vector<InputPlace> inputs;  ///< one element for each input of `graph`
   std::vector<NamedUnit> parameters, coordinates, joints, margins, quantities;
-  std::vector<double> design;  ///< values of all parameters
+  std::vector<double> design;  ///< values of all parameters of the mechanism [SI]
 
   Function inverse;                   ///< computes q, and `assembly`: values that are all >= 0 if the mechanism can be
                                       ///< assembled at the pose

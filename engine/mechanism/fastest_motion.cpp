@@ -22,7 +22,8 @@ bool is_finite_sample(const MotionSample& at) {
 /// than its curvature there explains.
 void refuse_corners(const MovesOfMotion::Move& move) {
   constexpr double kCorner = 0.2;   // change of the tangent between two samples that is always allowed [rad]
-  constexpr double kExplained = 4;  // allowed multiple of the change that the curvature at the samples predicts
+  constexpr double kExplained = 4;  // factor by which the change may exceed the one that the curvature at the samples
+                                    // predicts
   for (std::size_t i = 1; i < move.samples.size(); ++i) {
     const MotionSample &a = move.samples[i - 1], &b = move.samples[i];
     const AxisVector<double> change = b.velocity - a.velocity;
@@ -34,7 +35,7 @@ void refuse_corners(const MovesOfMotion::Move& move) {
   }
 }
 
-/// The motion at a time, with its own time law.
+/// Pose, velocity and acceleration of the motion, with its own time law, at a time.
 MotionSample sample_at(const Motion& motion, double time) {
   MotionSample found = motion.at(time);
   found.time = time;
@@ -65,7 +66,8 @@ double factor_at(const DesignWithLimits& design, const MotionSample& sample, dou
 /// minima of the factor over the time are located by golden-section search.
 void scale_own_law(const MovesOfMotion& moves, const MovesOfMotion::Move& move, const DesignWithLimits& design,
                    FastestMove& found) {
-  constexpr double kCandidates = 1.05;  // minima between samples can be lower than those at samples by this factor
+  // Factor by which a minimum between two samples may be lower than the values at the samples.
+  constexpr double kCandidates = 1.05;
   constexpr double kUnbounded = 1e30;
   // Final width of the bracket of a minimum, relative to the distance of the samples.
   constexpr double kBracketOfPeak = 1e-9;
@@ -171,7 +173,7 @@ double thermal_reserve(const MovesOfMotion& moves, const DesignWithLimits& desig
 /// exceeds its continuous torque.
 void limit_continuous_torque(const MovesOfMotion& moves, const DesignWithLimits& design, ShortestTimes& found) {
   constexpr double kSlowest = 1e-8;
-  // Violations up to this, relative to the squared torque, are within the accuracy of reduce_torques().
+  // Violations up to this, relative to the squared torque, are within the accuracy of reduce_torques() and are ignored.
   constexpr double kRounding = 1e-9;
   std::vector<MoveStates<double>> states;
   for (std::size_t k = 0; k < found.moves.size(); ++k) states.push_back(states_of(moves.moves()[k], found.moves[k]));
@@ -234,9 +236,9 @@ void reduce_torques(const MovesOfMotion& moves, const DesignWithLimits& design, 
   }
 }
 
-/// The continuous torque determines a factor of the torques or of the speeds. Adds the derivatives of this factor to
-/// those of the moves' total duration, by implicit differentiation of the mean square torque. The derivative of the
-/// mean square torque with respect to the factor is a central difference.
+/// The continuous torque determines a factor by which the peak torques or the speeds are multiplied. Adds the
+/// contribution of this factor to the derivatives of the moves' total duration, by implicit differentiation of the mean
+/// square torque. The derivative of the mean square torque with respect to the factor is a central difference.
 /// @param duration  total duration of the moves without pauses, before they are slowed down, with derivatives at a
 /// constant factor
 Dual4 differentiate_thermal_factor(const MovesOfMotion& moves, const ShortestTimes& found,
@@ -389,7 +391,7 @@ Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes&
       state.squares = std::move(profile.squares);
       state.accelerations = std::move(profile.accelerations);
     } else {
-      // The active limit determines the factor: differentiate it implicitly at the fixed time of the extremum.
+      // The active limit determines the factor: differentiate this limit implicitly at the fixed time of the extremum.
       std::vector<PathPoint<Dual4>> at;
       path_points<Dual4>(design.mechanism, parameters, design.mode, {&result.limiting, 1}, design.wrench, at);
       const PathPoint<Dual<1>> constant = constant_point<Dual<1>>(points_at(design, {&result.limiting, 1})[0]);

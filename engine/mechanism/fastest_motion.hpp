@@ -37,7 +37,8 @@ class MovesOfMotion {
   struct Move {
     MovePeriod period;
     std::shared_ptr<const GeometricPath> path;  ///< path of the move, with FastestLaw::optimal; otherwise null
-    std::vector<MotionSample> samples;          ///< samples of the move at the ends of these intervals
+    std::vector<MotionSample> samples;          ///< samples of the move at the ends of the intervals into which it is
+                                                ///< divided
     /// For consecutive samples, the differences of the path parameter or, with FastestLaw::own, of the time [s].
     std::vector<double> steps;
   };
@@ -69,7 +70,8 @@ struct FastestMove {
   std::vector<PathPoint<double>> points;  ///< points of the path at the samples of the move
   /// Time-optimal speed profile, with FastestLaw::optimal; otherwise null.
   std::shared_ptr<const SpeedProfile> profile = {};
-  double factor = 1;           ///< with FastestLaw::own: squared ratio of the speeds to those of the given motion
+  double factor = 1;           ///< with FastestLaw::own: square of the ratio between the speeds of the fastest motion
+                               ///< and of the given motion
   MotionSample limiting = {};  ///< with FastestLaw::own: the sample of the motion that limits `factor`
   Violation limit = {};        ///< with FastestLaw::own: the limit that is active at `limiting`
 };
@@ -81,7 +83,7 @@ struct ShortestTimes {
   /// `torque_factor` multiplies the peak torques of all motors (FastestLaw::optimal only), `thermal_factor` the squared
   /// speeds of all moves. 1: the continuous torques do not limit the motion.
   double torque_factor = 1, thermal_factor = 1;
-  std::size_t thermal_joint = 0;  ///< index of the joint whose motor determines these factors
+  std::size_t thermal_joint = 0;  ///< index of the joint whose motor determines torque_factor and thermal_factor
   double duration = 0;            ///< duration of the motion, including its pauses [s]
 };
 

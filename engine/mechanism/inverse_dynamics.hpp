@@ -41,7 +41,8 @@ inline constexpr std::size_t kInverseDynamicsBatch = 32;
 /// The equations of motion at samples in batches: calls visit(k, MotionState<S>, PoseDynamics<S>) for the samples in
 /// order, up to the first that cannot be assembled or for which `visit` returns false.
 /// @param samples     MotionSample, or DualMotionSample with S = Dual4
-/// @return            index of that sample; samples.size() if there is none
+/// @return            index of the first sample that cannot be assembled or for which `visit` returned false;
+///   samples.size() if there is none
 template <class S, class Sample, class Visit>
 std::size_t equations_along(const Dynamics& mechanism, std::span<const S> parameters, const std::string& mode,
                             std::span<const Sample> samples, InverseDynamicsScratch<S>& scratch, const Visit& visit) {

@@ -1,4 +1,4 @@
-// Margins of poses in a fixed order, with derivatives by the pose or by the design.
+// Margins of poses in a fixed order, with derivatives with respect to the pose or to the parameters of the design.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ namespace pkm {
 class OrderedMargins {
  public:
   virtual ~OrderedMargins() = default;
-  /// Names of the margins, in this order.
+  /// Names of the margins, in the order in which append_ordered() appends their values.
   virtual std::vector<std::string> margin_names(const LimitSpec& limits) const = 0;
   /// Appends the margins of all poses; a margin that does not exist at a pose is NaN. At a pose that cannot be
   /// assembled, at least one margin is negative or NaN.

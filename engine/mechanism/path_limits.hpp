@@ -86,7 +86,8 @@ void visit_speed_bounds(const PathPoint<S>& p, const MotionLimits& limits, const
     }
   }
   bound(LimitKind::tool_speed, 0, limits.tool_speed, S(p.tool11));
-  // the component of the tool's acceleration normal to its velocity is bounded by bounding y
+  // The component of the tool's acceleration normal to its velocity is proportional to y, so that its limit is an upper
+  // bound of y.
   if (std::isfinite(limits.tool_acceleration)) {
     const double normal = p.tool11 > 0 ? std::fmax(p.tool22 - p.tool12 * p.tool12 / p.tool11, 0) : p.tool22;
     visit(LimitOfMotion{LimitKind::tool_acceleration}, SpeedBound<S>{S(limits.tool_acceleration / std::sqrt(normal))});

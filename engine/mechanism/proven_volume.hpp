@@ -1,4 +1,4 @@
-// Proven bounds of volumes that are computed by columns.
+// Interface of workspace analyses by columns that can prove bounds of the volumes they compute.
 #pragma once
 
 #include <optional>

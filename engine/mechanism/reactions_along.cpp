@@ -6,7 +6,8 @@
 namespace pkm {
 namespace {
 
-// Relative size of a rounding error; a lever arm of 1 m makes forces and couples comparable.
+// Relative differences between loads up to this are rounding errors. Forces [N] and couples [N m] are compared with
+// each other as if the lever arm were 1 m.
 constexpr double kRounding = 1e-12;
 
 /// Computes peak and RMS of the force or the couple in the joint with index `joint`.

@@ -32,8 +32,9 @@ Unsupported why_no_drive_forces(const Mechanism& mechanism);
 
 /// Drive forces for an acceleration under a wrench, and the reason if there are none.
 struct DistributedForces {
-  std::optional<AxisVector<double>> tau;  ///< [N, N m]
-  std::string reason;                     ///< "" if there are forces
+  std::optional<AxisVector<double>> tau;  ///< force or torque of each drive [N, N m]; std::nullopt if no forces balance
+                                          ///< the load
+  std::string reason;                     ///< reason why there are no forces; "" if there are
 };
 DistributedForces distributed_forces(const PoseDynamics<double>& d, const AxisVector<double>& acceleration,
                                      const Wrench<double>& wrench, const DriveLimits& limits);

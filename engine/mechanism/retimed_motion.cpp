@@ -15,11 +15,12 @@ constexpr double kInset = 1e-13;
 
 /// A move or a pause of the retimed motion.
 struct TimePiece {
-  double begin, duration;  ///< begin and duration in the retimed motion [s]
+  double begin, duration;  ///< begin in the retimed motion, and duration [s]
   double original;         ///< begin in the original motion [s]
   bool moves = false;      ///< true: a move; false: a pause
-  double end = 0;          ///< end in the original motion [s], for moves
-  double factor = 1;       ///< factor of the squared speeds of the profile, or (FastestLaw::own) of the original motion
+  double end = 0;          ///< moves only: end in the original motion [s]
+  double factor = 1;       ///< factor by which the squared speeds of the profile, or (FastestLaw::own) of the original
+                           ///< motion, are multiplied
   // The following members are set for moves with FastestLaw::optimal:
   std::shared_ptr<const GeometricPath> path = {};
   std::shared_ptr<const SpeedProfile> profile = {};
@@ -226,7 +227,7 @@ class SampledLimits {
 /// Appends to `active` the periods of a move during which a limit is active.
 void add_active_periods(const MovesOfMotion::Move& move, const FastestMove& fastest, const DesignWithLimits& design,
                         const MovePeriod& period, double factor, std::vector<ActivePeriod>& active) {
-  constexpr double kActive = 1e-6;  // a limit that is used to within this, relative to the limit, is active
+  constexpr double kActive = 1e-6;  // a limit is active if the motion uses all of it, except for this relative amount
   const double root = std::sqrt(factor);
   if (!fastest.profile) {
     const double time = period.begin + (fastest.limiting.time - move.period.begin) / root;
@@ -272,8 +273,9 @@ double duration_with_half_the_nodes(const MovesOfMotion& moves, const ShortestTi
 SpeedProfile corrected_profile(const MovesOfMotion::Move& move, const FastestMove& found,
                                const DesignWithLimits& design, const MotionLimits& limits) {
   constexpr int kIterations = 8;
-  constexpr double kNegligible = 1e-5;  // relative violation of a limit that is not corrected
-  constexpr double kReserve = 0.02;  // fraction of the limits that is kept in addition to what holds the pose at rest
+  constexpr double kNegligible = 1e-5;  // relative violations of a limit up to this are not corrected
+  constexpr double kReserve = 0.02;     // fraction of the limits that is kept in addition to what is needed to hold the
+                                        // pose at rest
   const DriveTrains* const trains = design.mechanism.drive_trains();
   SpeedProfile profile = *found.profile;
   std::vector<double> scales(found.points.size(), 1.0);

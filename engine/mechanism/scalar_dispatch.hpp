@@ -1,4 +1,5 @@
-// Scalar dispatch: CRTP bases whose overloads for double and Dual4 both call one member template of the mechanism.
+// Scalar dispatch: CRTP base classes whose overloads for double and Dual4 both call one member template of the
+// mechanism.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"

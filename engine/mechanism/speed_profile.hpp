@@ -25,8 +25,9 @@ namespace pkm {
 /// The limit that determines a value of the profile.
 struct BindingLimit {
   enum class By { speed, acceleration, deceleration, next, floor } by = By::floor;
-  /// Number of the limit in the order of visit_speed_bounds() or visit_linear_limits(); with By::floor, of the linear
-  /// limit at the lower end of u, which would allow more deceleration than stopping requires.
+  /// Number of the limit in the order of visit_speed_bounds() or visit_linear_limits(). With By::floor, the minimum of
+  /// u is the one that stops the motion at the next point; `number` is then the linear limit that would allow an even
+  /// smaller u.
   int number = -1;
 };
 

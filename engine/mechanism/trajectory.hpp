@@ -22,7 +22,8 @@ struct TrajectoryPoint {
   bool feasible = false;
   std::string reason;  ///< the reason if the sample is infeasible; "" if it is feasible
   std::optional<double> conditioning;
-  std::optional<AxisVector<double>> joints, speeds, accelerations;  ///< q [m, rad], qdot and qddot of each joint
+  /// Position q [m, rad], velocity and acceleration of each joint.
+  std::optional<AxisVector<double>> joints, speeds, accelerations;
   std::optional<AxisVector<double>> forces, power;  ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
   /// Torque [N m] and speed [rad/s] of each motor, if there are drive trains.
   std::optional<AxisVector<double>> torques, motor_speeds;
@@ -34,7 +35,7 @@ struct TrajectoryPoint {
 struct TrajectorySummary {
   std::size_t infeasible = 0;                    ///< number of samples that are infeasible
   std::optional<AxisVector<double>> peak_speed;  ///< maximum |qdot| [m/s, rad/s]; std::nullopt if no sample has speeds
-  bool has_forces = false;                       ///< true if every sample has forces; otherwise the following are 0
+  bool has_forces = false;                       ///< true if every sample has forces; otherwise all members below are 0
   AxisVector<double> peak_force, rms_force;      ///< maximum |tau|, and root-mean-square tau over the samples [N, N m]
   AxisVector<double> peak_power;                 ///< maximum |tau qdot|, driving or braking [W]
   /// Torques [N m] and speed [rad/s] of the motors of drive trains.

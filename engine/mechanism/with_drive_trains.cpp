@@ -55,7 +55,8 @@ class MechanismWithDriveTrains final : public Mechanism,
     return bare_->quantities(parameters, mode, limits, at);
   }
 
-  /// Null if the mechanism's voxel analysis does not support rotors; the inverse kinematics then tests every cell.
+  /// The voxel analysis of the mechanism; null if it does not support rotors, so that every cell is tested by inverse
+  /// kinematics.
   const Voxels* voxels() const override {
     return bare_->voxels() && (!has_inertia() || bare_->voxels()->supports_rotors()) ? this : nullptr;
   }

@@ -7,23 +7,24 @@
 
 namespace pkm {
 
-/// A motion of a study. NamedMotion::motion is that of the study's own parameters.
+/// A motion of a study. NamedMotion::motion is the motion for the parameters that the study itself defines.
 struct DesignMotion : NamedMotion {
   /// Indices of the mechanism's parameters on which the motion depends.
   std::vector<std::size_t> parameters = {};
-  /// The motion for all parameters of the mechanism; empty if it depends on none. Throws DesignError if there is none.
+  /// Returns the motion for given values of all parameters of the mechanism; empty if the motion does not depend on
+  /// parameters. Throws DesignError if there is no motion for these values.
   std::function<std::shared_ptr<const Motion>(std::span<const double>)> of_design = nullptr;
-  /// Reason why the motion has no derivatives with respect to these parameters; empty: it has derivatives.
+  /// Reason why the motion has no derivatives with respect to `parameters`; empty: it has derivatives.
   Unsupported why_no_derivatives = {};
 
-  /// The motion of a design, given by all parameters of the mechanism. Throws DesignError if it has none.
+  /// The motion of a design, given by all parameters of the mechanism. Throws DesignError if the design has no motion.
   std::shared_ptr<const Motion> at(std::span<const double> design) const {
     return of_design ? of_design(design) : motion;
   }
 };
 
-/// A sample of a motion with its derivatives by the design. Velocity and acceleration are those at a fixed fraction of
-/// the motion's duration, not at a fixed time.
+/// A sample of a motion with its derivatives with respect to the design. Velocity and acceleration are those at a fixed
+/// fraction of the motion's duration, not at a fixed time.
 struct DualMotionSample {
   Dual4 time;                                ///< time of the sample [s]
   Pose<Dual4> pose;                          ///< coordinates of the pose [m, rad]

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSpeedSamples = 10'000;
 constexpr double kAtRest = 1e-6;   // speed, relative to the maximum speed, below which the platform counts as at rest
-constexpr double kInstant = 1e-6;  // duration, relative to that of the motion; shorter pauses are ignored
+constexpr double kInstant = 1e-6;  // pauses that are shorter, relative to the duration of the motion, are ignored
 constexpr double kStopAccuracy = 1e-15;  // accuracy of the times of stops, relative to the duration of the motion
 
 }  // namespace

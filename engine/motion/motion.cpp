@@ -8,7 +8,8 @@ namespace pkm {
 
 std::vector<expression::Node> Motion::write(TimeGraph& to) const {
   std::vector<expression::Node> pose = write_(to);
-  for (expression::Node& node : pose)  // constants become inputs, because constant folding would round
+  // The constants become inputs, because folding them in double precision would round.
+  for (expression::Node& node : pose)
     if (to.graph[node].is_number()) node = to.input(to.graph[node].number).node();
   return pose;
 }

@@ -8,9 +8,9 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kPanels =
-    480;  // intervals of the composite quadrature; a multiple of 3, for speeds with kinks at thirds
-// distance from the ends, relative to the length of the path, at which derivatives are computed instead of at the ends
+// Number of intervals of the composite quadrature; a multiple of 3, for motions whose speed has kinks at thirds.
+constexpr std::size_t kPanels = 480;
+// Minimum distance from the ends of the path, relative to its length, at which derivatives are computed.
 constexpr double kFromStop = 1e-7;
 constexpr double kTimeAccuracy = 1e-15;  // accuracy of times, relative to the duration of the move
 
@@ -31,7 +31,7 @@ double GeometricPath::speed(double time) const {
 }
 
 double GeometricPath::integral(double from, double to) const {
-  // Gauss-Legendre quadrature with four nodes
+  // The following is a Gauss-Legendre rule with four nodes.
   constexpr double kNodes[] = {0.3399810435848563, 0.8611363115940526};
   constexpr double kWeights[] = {0.6521451548625461, 0.3478548451374538};
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);

@@ -20,8 +20,8 @@ class GeometricPath {
   GeometricPath(std::shared_ptr<const Motion> motion, const MovePeriod& move);
 
   double length() const { return lengths_.back(); }
-  /// Arc length of node i of n: half of the nodes are distributed equally over the arc length, and half over the time
-  /// of the motion, which is usually slow where the path is curved.
+  /// Arc length of node i of n. The nodes are equally spaced in the mean of the travelled fraction of the arc length
+  /// and the elapsed fraction of the time, because the motion is usually slow where the path is curved.
   double node(std::size_t i, std::size_t n) const;
   /// Pose, dX/ds (as velocity) and d2X/ds2 (as acceleration) at an arc length in [0, length()]; `time` and `inputs` are
   /// those of the motion. At both ends, where the motion is at rest, the derivatives are those of a close point.

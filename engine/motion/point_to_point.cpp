@@ -48,7 +48,7 @@ std::shared_ptr<const Motion> point_to_point(const AxisVector<double>& start, co
     end += move.duration;
   }
   const auto at = [legs = std::move(legs), law](double time) {
-    // the last leg that has begun, or the first leg during the pause before it
+    // Use the last leg that has begun or, during the pause before the first leg, the first one.
     const auto after = std::ranges::upper_bound(legs, time, {}, &Leg::begin);
     const Leg& leg = after == legs.begin() ? legs.front() : *(after - 1);
     const PathState fraction = evaluate(law, time - leg.begin, leg.duration, 1);

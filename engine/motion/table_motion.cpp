@@ -30,7 +30,7 @@ std::vector<double> spline_slopes(const std::vector<double>& t, const std::vecto
   slopes[0] = slope_at_first({t[0], t[1], t[2], t[3]}, {x[0], x[1], x[2], x[3]});
   slopes[n - 1] = slope_at_first({t[n - 1], t[n - 2], t[n - 3], t[n - 4]}, {x[n - 1], x[n - 2], x[n - 3], x[n - 4]});
   std::vector<double> upper(n, 0.0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {  // elimination
+  for (std::size_t i = 1; i + 1 < n; ++i) {  // elimination of the elements below the diagonal
     const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
     const double right = 3 * ((x[i] - x[i - 1]) * after / before + (x[i + 1] - x[i]) * before / after);
     diagonal[i] = 2 * (before + after) - after * upper[i - 1];
@@ -56,7 +56,7 @@ std::shared_ptr<const Motion> motion_from_table(const std::vector<double>& times
     sample.time = time;
     sample.pose = sample.velocity = sample.acceleration = AxisVector<double>(coordinates.size());
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
-      // Hermite form: x = a + u (b + u (c + u d))
+      // Hermite form of the spline in an interval: x = a + u (b + u (c + u d)).
       const double a = coordinates[i][k - 1], b = h * slopes[i][k - 1];
       const double rise = coordinates[i][k] - a, end = h * slopes[i][k];
       const double c = 3 * rise - 2 * b - end, d = b + end - 2 * rise;

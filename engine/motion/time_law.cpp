@@ -30,7 +30,7 @@ expression::Term path_fraction(TimeLaw law, TimeGraph& graph, const Interval& be
   const auto number = [&graph](double value) { return graph.number(value); };
   const auto s = [&](const Term& u) {
     if (law == TimeLaw::cycloid) return u - sin(number(2 * kPi) * u) / number(2 * kPi);
-    if (law == TimeLaw::trapezoid) {  // up to u = 1/2
+    if (law == TimeLaw::trapezoid) {  // this expression applies up to u = 1/2
       const Term beyond = call(operation("max"), u - graph.number(Interval(1.0) / Interval(3.0)), number(0));
       return number(2.25) * (u * u - beyond * beyond);
     }

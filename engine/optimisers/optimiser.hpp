@@ -47,13 +47,14 @@ struct Generation {
   /// Row number of the best design (with several objectives, of the compromise solution); -1: none yet.
   std::int64_t best_row = -1;
   const std::vector<StartOutcome>* starts = nullptr;  ///< outcomes of the finished starts; null unless a solver reports
-  /// Set by solvers only: returns, for a checkpoint, the evaluations and outcomes of starts that are not yet merged
-  /// into the table.
+  /// Function of solver stages that returns, for a checkpoint, the evaluations and outcomes of starts that are not yet
+  /// merged into the table.
   std::function<std::vector<UnmergedRun>()> ahead = {};
   /// Maximum number of evaluations still to be made; nullopt: the evaluation limit of the stage minus the evaluations
   /// made.
   std::optional<std::int64_t> left = {};
-  /// True: reported by this MPI rank alone. The ranks are compared at the end of the stage only.
+  /// True: this MPI rank alone reports the generation. The evaluations of the ranks are compared only at the end of the
+  /// stage.
   bool alone = false;
   const Front* front = nullptr;  ///< the Pareto front so far, with several objectives; otherwise null
 };
@@ -102,8 +103,9 @@ struct StageInput {
   std::uint64_t seed = 1;
   std::vector<StartDesign> starts;    ///< start designs from the study or from earlier stages; may be empty
   PreviousFront previous_front = {};  ///< empty unless the study has several objectives
-  /// Set for a resumed stage, otherwise null and empty: the recorded evaluations, in which those of the finished starts
-  /// `recorded_starts` come first, and the evaluations of further starts that were not yet merged into the table.
+  /// For a resumed stage, the recorded evaluations, in which those of the finished starts `recorded_starts` come first,
+  /// and the evaluations of further starts that were not yet merged into the table. For any other stage, `recorded` is
+  /// null and the lists are empty.
   const EvaluationTable* recorded = nullptr;
   std::vector<StartOutcome> recorded_starts = {};
   std::vector<UnmergedRun> recorded_unmerged_runs = {};

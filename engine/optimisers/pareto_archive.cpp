@@ -50,7 +50,7 @@ bool ParetoArchive::add(std::span<const std::int64_t> rows) {
 bool ParetoArchive::fix_reference_point(const Scores& feasible) {
   // Distance of the reference point from the worst value, relative to the objective's range.
   constexpr double kMargin = 0.1;
-  if (feasible.objectives > 3) return false;  // hypervolumes are computed for two and three objectives
+  if (feasible.objectives > 3) return false;  // hypervolumes are computed for two and three objectives only
   sample_.values.insert(sample_.values.end(), feasible.values.begin(), feasible.values.end());
   if (sample_.size() < std::max<std::size_t>(min_feasible_designs_, 2)) return false;
   const Ranges extent = ranges_of(sample_);

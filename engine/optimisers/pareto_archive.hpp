@@ -16,7 +16,7 @@ struct ParetoArchivePlan {
   NamedNumbers reference = {};
   /// Number of feasible designs required before an automatic reference point is chosen.
   std::size_t min_feasible_designs = 2;
-  /// Points of a known Pareto front, each with the values of all objectives by name, for IGD+.
+  /// Points of a known Pareto front, each with the values of all objectives by name, for the indicator IGD+.
   std::vector<NamedNumbers> reference_front = {};
 };
 

@@ -11,7 +11,7 @@ enum class Start {
                     ///< beyond the 21st are sampled by a Latin hypercube
   latin_hypercube,  ///< the range of each variable is divided into `count` equal strata, each of which contains one
                     ///< point
-  random            ///< independent and uniformly distributed
+  random            ///< independent random designs, uniformly distributed in the ranges of the variables
 };
 
 /// Samples the unit cube. A larger Sobol sample begins with the points of a smaller one of the same seed.

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMaxGenerationSize = 1000;
 constexpr double kMaxDesigns = 1e8;
 
-using Levels = std::vector<std::vector<double>>;  // the values of each variable on the grid, ascending
+using Levels = std::vector<std::vector<double>>;  // for each variable, its values on the grid, in ascending order
 
 // The values of each variable on the grid: equally spaced over its range, rounded to its step if the variable has one,
 // without duplicates.

@@ -23,7 +23,8 @@ void ToleranceModel::sample(std::size_t index, std::span<const double> design, s
     const std::size_t count = group.errors.size();
     normal.resize(count);
     drawn.resize(count);
-    // rejection sampling of the truncated distribution: errors of a group are drawn until all are within their bounds
+    // Sample the truncated distribution by rejection: draw the errors of a group until all of them are within their
+    // bounds.
     const auto is_within = [&] {
       for (std::size_t i = 0; i < count; ++i)
         if (!(std::fabs(drawn[i]) <= errors[group.errors[i]].bound)) return false;

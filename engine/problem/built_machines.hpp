@@ -35,7 +35,7 @@ struct LimbCopy {
   std::size_t own, common;
 };
 
-/// Errors that are drawn together: a single one, or correlated normal errors.
+/// Parameter errors that are drawn together: a single error, or several correlated, normally distributed errors.
 struct ErrorGroup {
   std::vector<std::size_t> errors;
   /// Cholesky factor of the correlation matrix: rows of a lower triangular matrix. Empty for a single error.
@@ -60,7 +60,7 @@ struct ToleranceModel {
 struct SampledValue {
   enum class Statistic { worst, mean, quantile, yield, yield_lower, yield_upper };
   Statistic statistic;
-  double probability = 0;         ///< for a quantile: share of machines with a worse value
+  double probability = 0;         ///< for a quantile: share of the machines that have a worse value
   bool greater_is_better = true;  ///< true: smaller values are worse; false: greater ones
   /// For other statistics than a yield: index of the quantity among the objectives of BuiltMachines::problem.
   std::size_t row = 0;
@@ -68,7 +68,7 @@ struct SampledValue {
   bool is_yield() const { return statistic >= Statistic::yield; }
 };
 
-/// Share of built machines that satisfy all constraints.
+/// Share of the built machines that satisfy all constraints, with the numbers of machines from which it is computed.
 struct Yield {
   std::size_t machines = 0, good = 0;
   /// Number of machines that violate each constraint. The workspace of a machine that violates a constraint of the
@@ -86,7 +86,7 @@ struct Yield {
 struct MachineValues {
   std::size_t machines = 0;
   std::vector<double> objectives;   ///< machines x objectives of BuiltMachines::problem
-  std::vector<double> margins;      ///< machines x margins
+  std::vector<double> margins;      ///< machines x margins of BuiltMachines::problem
   std::vector<double> derivatives;  ///< machines x (objectives + margins) x (1 + directions): smooth values and their
                                     ///< derivatives
 };

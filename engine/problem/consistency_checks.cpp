@@ -17,7 +17,8 @@ namespace {
 using Kind = FixedCoordinate::Kind;
 using Interval1D = std::array<double, 2>;
 
-constexpr std::size_t kMaxVariables = 10;  // checks use the 2^n vertices of the bounds; skipped for more variables
+// Maximum number n of variables for which the checks use the 2^n vertices of the bounds.
+constexpr std::size_t kMaxVariables = 10;
 // A box is reported if it lies this far outside the range that the vertex designs reach, relative to the size of the
 // range. The tolerance is necessary because designs inside the bounds may reach farther than those at the vertices.
 constexpr double kReachTolerance = 0.1;
@@ -26,7 +27,7 @@ const std::string kContradiction = "contradiction";
 
 struct Findings {
   std::vector<Reason> contradictions;
-  std::vector<std::string> warnings;  ///< probable mistakes
+  std::vector<std::string> warnings;  ///< sentences about probable mistakes
 
   void add(bool is_contradiction, const std::string& name, const std::string& sentence) {
     if (is_contradiction)
@@ -124,7 +125,7 @@ void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<do
       for (std::size_t axis = 0; axis < 3; ++axis) widen(hull[axis], {map.lower[axis], map.upper[axis]});
     }
   } catch (const std::invalid_argument&) {
-    // the mechanism defines no box of its workspace
+    // The mechanism does not define a box of its workspace.
   }
 }
 

@@ -19,15 +19,16 @@ struct NamedQuantity {
   std::string name;
   std::string unit;
   std::string meaning;
-  Direction direction = Direction::maximise;  ///< objectives only
+  Direction direction = Direction::maximise;  ///< direction of optimisation; used for objectives only
   std::shared_ptr<const Quantity> quantity;
-  std::size_t analysis = 0;  ///< workspace analysis that the quantity uses; 0: the workspace, k: the k-th region
+  std::size_t analysis = 0;  ///< workspace analysis that the quantity uses; 0: that of the whole workspace, k: that of
+                             ///< the k-th region
   bool uses_workspace = true;
   Range range = {};  ///< possible values of the quantity
   /// Bound of a constraint on a quantity: its margin is value - lower_bound, or upper_bound - value. If neither is set,
   /// the margin is the value itself.
   std::optional<double> lower_bound, upper_bound;
-  /// A statistic over built machines, which replaces the value; the bounds apply to it.
+  /// Statistic over built machines that replaces the value of the quantity; the bounds then apply to the statistic.
   std::optional<SampledValue> sampled = {};
 
   /// Whether the value needs the workspace analysis of the design itself. A statistic over built machines needs those
@@ -52,13 +53,14 @@ struct ProblemParts {
   FieldRequest request;
   std::vector<Region> regions;
   std::vector<NamedQuantity> objectives;
-  std::vector<NamedQuantity> design_margins;     ///< constraints without workspace analysis: evaluated first
+  std::vector<NamedQuantity> design_margins;     ///< constraints that need no workspace analysis; they are evaluated
+                                                 ///< first
   std::vector<NamedQuantity> workspace_margins;  ///< all other constraints, including those on external functions
   std::vector<NamedQuantity> reports;
   std::vector<FollowedMotion> followed;
   std::vector<Choice> choices;       ///< variables that are choices of a row from a catalogue
   std::vector<std::size_t> rows;     ///< the chosen row of each catalogue, which determines the mechanism
-  std::vector<std::size_t> of_rows;  ///< indices of the parameters whose values are those of the chosen rows
+  std::vector<std::size_t> of_rows;  ///< indices of the parameters whose values come from the chosen rows
   /// Makes the problem of the same study with other rows of the catalogues; variables, objectives and constraints are
   /// the same. Null without catalogues.
   std::function<std::shared_ptr<const DesignProblem>(const std::vector<std::size_t>& rows)> with_rows = nullptr;
@@ -72,7 +74,7 @@ struct ProblemParts {
 /// Complete evaluation of one design, for the command line and the group /final of the study file.
 struct DesignReport {
   std::vector<double> parameters;
-  std::vector<double> objectives, margins, reports;  ///< NaN: not computed
+  std::vector<double> objectives, margins, reports;  ///< values of the design; NaN: not computed
   Status status = Status::failed;
   std::string reason;  ///< why a value is missing (also for a rejected design); "" if no value is missing
   WorkspaceResult<double> workspace;
@@ -87,14 +89,18 @@ class DesignProblem final : public Problem {
 
   const DesignSpace& space() const override { return parts_.space; }
   const std::vector<ObjectiveInfo>& objectives() const override { return objectives_; }
-  const std::vector<MarginInfo>& margins() const override { return margins_; }  ///< design-level margins first
+  const std::vector<MarginInfo>& margins() const override {
+    return margins_;
+  }  ///< margins of all constraints,
+     ///< design-level ones first
   const std::vector<OutputInfo>& reports() const override { return reports_; }
   void evaluate(std::span<const double> design, Scratch& scratch, EvaluationSlot result) const override;
   void complete(std::span<EvaluatedDesign> rows) const override;
   bool needs_completion() const override { return !calls_.empty(); }
   /// The external functions that the quantities call, each listed once.
   const std::vector<std::string>& external_calls() const { return calls_; }
-  /// Derivatives require that all workspace analyses in use and all quantities have derivatives.
+  /// The reason why the problem has no derivatives, if a workspace analysis in use or a quantity has none; empty if it
+  /// has.
   Unsupported why_no_derivatives() const override;
 
   const ProblemParts& parts() const { return parts_; }
@@ -103,7 +109,7 @@ class DesignProblem final : public Problem {
   const DesignProblem& of(std::span<const double> parameters) const;
   /// The full parameter vector of a design. @param design  one value per variable
   std::vector<double> parameters(std::span<const double> design) const;
-  /// A single workspace analysis. @param k  0: the workspace; otherwise the k-th region, from 1
+  /// Performs a single workspace analysis. @param k  0: the workspace; otherwise the k-th region, from 1
   WorkspaceResult<double> workspace(std::span<const double> parameters, std::size_t k = 0) const;
   /// Evaluates a full parameter vector, which may violate the bounds of the variables (as a baseline may). Continues
   /// if a design-level constraint is violated.
@@ -133,7 +139,7 @@ class DesignProblem final : public Problem {
   /// @param by  indices of the parameters with respect to which derivatives are computed; std::nullopt: no derivatives
   void evaluate_machines(std::span<const double> parameters, std::optional<std::span<const std::size_t>> by,
                          Scratch& scratch) const;
-  /// Evaluates one built machine, as far as possible: all values are set that can be computed.
+  /// Evaluates one built machine and sets all values that can be computed.
   void evaluate_machine(std::span<const double> parameters, std::optional<std::span<const std::size_t>> by,
                         Scratch& scratch, std::span<double> objectives, std::span<double> margins,
                         std::span<double> derivatives) const;
@@ -145,13 +151,13 @@ class DesignProblem final : public Problem {
                          Scratch& scratch) const;
   /// Reason why a built machine of this design cannot be evaluated; "" if all can.
   std::string why_machine_fails(std::span<const double> parameters) const;
-  /// Computes the values of external functions of a design, after compute(). @return why a call failed; "" if none
-  /// failed
+  /// Computes the values of external functions of a design, after compute(). @return the reason why a call failed; ""
+  /// if none failed
   std::string complete(std::span<const double> parameters, const EvaluationSlot& result) const;
   /// Calls an external function for the designs whose parameters are the rows of `parameters`.
   void evaluate_external(const std::string& call, std::span<const double> parameters,
                          std::span<ExternalValue> values) const;
-  /// Stores the values of external functions and updates the status. @return why the design failed
+  /// Stores the values of external functions and updates the status. @return the reason why the design failed
   std::string store(std::span<const ExternalValue> values, const EvaluationSlot& result) const;
   DesignReport empty_report(std::span<const double> parameters) const;
   std::string failure_reason(const DesignReport& report) const;
@@ -167,7 +173,7 @@ class DesignProblem final : public Problem {
   ProblemParts parts_;
   std::vector<std::unique_ptr<const WorkspaceEvaluator>> workspace_evaluators_;
   std::vector<std::string> calls_;
-  std::vector<bool> used_;  ///< by workspace analysis: whether a quantity uses it
+  std::vector<bool> used_;  ///< for each workspace analysis, whether a quantity uses it
   std::vector<ObjectiveInfo> objectives_;
   std::vector<MarginInfo> margins_;
   std::vector<OutputInfo> reports_;

@@ -18,10 +18,10 @@ struct DesignProblem::Buffers {
   std::vector<Dual4> duals;  ///< the parameters with derivatives
   WorkspaceResults<double> workspaces;
   WorkspaceResults<Dual4> dual_workspaces;
-  MachineValues machines;        ///< of the design that was evaluated last
-  Yield yield;                   ///< of these machines, if the problem has a yield
+  MachineValues machines;        ///< values of all machines built to the design that was evaluated last
+  Yield yield;                   ///< yield of these machines, if the problem has a yield
   std::vector<Scratch> workers;  ///< scratch memory for the machines, by worker
-  std::vector<double> machine;   ///< parameters of a machine
+  std::vector<double> machine;   ///< parameters of the machine that is being evaluated
 };
 
 }  // namespace pkm

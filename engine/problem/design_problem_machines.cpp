@@ -44,7 +44,9 @@ void DesignProblem::evaluate_machine(std::span<const double> parameters, std::op
 void DesignProblem::evaluate_machines(std::span<const double> parameters,
                                       std::optional<std::span<const std::size_t>> by, Scratch& scratch) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  constexpr std::size_t kMachinesPerCheck = 64;  // of microseconds; the evaluation of a longer one checks by itself
+  // Machines between two checks for a stop request, if a machine takes microseconds; longer evaluations check
+  // themselves.
+  constexpr std::size_t kMachinesPerCheck = 64;
   const ToleranceModel& tolerances = parts_.built->tolerances;
   const std::shared_ptr<const DesignProblem>& problem = parts_.built->problem;
   Buffers& buffers = scratch.get<Buffers>();
@@ -68,7 +70,7 @@ void DesignProblem::evaluate_machines(std::span<const double> parameters,
       try {
         problem->evaluate_machine(machine, by, own, part(values.objectives, shape.objectives),
                                   part(values.margins, shape.margins), part(values.derivatives, shape.derivatives()));
-      } catch (const DesignError&) {  // its values remain NaN
+      } catch (const DesignError&) {  // the values of this machine remain NaN
       }
     }
   });

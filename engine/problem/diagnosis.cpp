@@ -14,7 +14,7 @@
 namespace pkm {
 namespace {
 
-// poses along each swept coordinate; an odd number, so that the midpoint is included
+// Number of poses along each swept coordinate; it is odd, so that the midpoint is included.
 constexpr std::int64_t kPosesPerAxis = 9;
 constexpr std::size_t kMaxLineLength = 1000;
 constexpr std::size_t kMaxAnalyses =

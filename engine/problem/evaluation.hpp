@@ -19,7 +19,7 @@ enum class Status : std::uint8_t {
 
 /// How much of a design is evaluated.
 enum class Detail : std::uint8_t {
-  enough,       ///< ends at a violated design-level constraint
+  enough,       ///< the evaluation may end at a violated constraint that depends on the design alone
   complete,     ///< all objectives and margins, whether or not constraints are violated
   derivatives,  ///< all objectives and margins with their derivatives
 };
@@ -43,7 +43,7 @@ struct EvaluationShape {
 /// Destination of the results of one evaluation. Objectives keep their unit and direction (no sign change).
 struct EvaluationSlot {
   std::span<double> objectives;
-  std::span<double> margins;  ///< >= 0: satisfied
+  std::span<double> margins;  ///< values of the constraints; a constraint is satisfied if its value is >= 0
   std::span<double> reports;
   Status& status;
   Detail detail = Detail::enough;
@@ -97,8 +97,8 @@ class EvaluationTable {
   std::vector<double> margins;      ///< rows x margins
   std::vector<double> reports;      ///< rows x reports
   std::vector<double> derivatives;  ///< rows x shape().derivatives()
-  std::vector<Status> status;       ///< rows
-  std::vector<float> seconds;       ///< rows; evaluation time, excluded from reproducibility checks
+  std::vector<Status> status;       ///< status of each row
+  std::vector<float> seconds;       ///< evaluation time of each row [s]; excluded from reproducibility checks
 
  private:
   void resize(std::size_t rows);

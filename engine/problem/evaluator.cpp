@@ -50,8 +50,8 @@ void begin_evaluation(const Problem& problem, std::span<const double> design, Sc
 // that need Problem::complete() keep a negative time, kNotEvaluated - time. Throws Stopped.
 void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t first, std::size_t last,
                    Scratch& scratch) {
-  // interval of checks for a stop request; for rows that take microseconds, the evaluation of a longer row checks
-  // itself
+  // Number of rows between two checks for a stop request, if rows take microseconds; the evaluation of a longer row
+  // checks itself.
   constexpr std::size_t kRowsPerCheck = 64;
   const bool is_complete = !problem.needs_completion();
   auto begin = Clock::now();
@@ -147,7 +147,8 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
 
 void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows,
                                       double design_seconds) {
-  // Times [s]: a shorter batch is faster on one thread; a longer design is worth evaluating on several threads.
+  // Minimum times [s]: a shorter batch is faster on one thread, and a longer design is worth evaluating on several
+  // threads.
   constexpr double kMinBatchTime = 5e-6, kMinDesignTime = 200e-6;
   const auto [first, end] = rows;
   const std::size_t count = end - first;

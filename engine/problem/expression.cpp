@@ -71,10 +71,10 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const W
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
     if (find_named(info.limits, parameter.name))
-      // as a name in expressions, it denotes the threshold in effect
+      // As a name in expressions, the limit's name denotes the threshold in effect, so that the parameter is skipped.
       continue;
     if (!expression::may_be_name(parameter.name))
-      // a parameter of a single limb, such as "arm2.l_b", whose name formulas cannot contain
+      // Skip the parameters of single limbs, such as "arm2.l_b", because formulas cannot contain their names.
       continue;
     names.push_back({parameter.name, parameter.unit, parameter.meaning, Origin::parameter, i});
   }

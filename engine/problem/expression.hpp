@@ -28,8 +28,9 @@ struct ExpressionName {
 struct AnalysisResult {
   std::string name;
   std::string meaning;
-  const PoseQuantity* quantity = nullptr;  ///< null: the volume
-  std::string statistic = {};              ///< see NamedStatistic
+  const PoseQuantity* quantity = nullptr;  ///< quantity of which the result is a statistic; null: the result is the
+                                           ///< volume
+  std::string statistic = {};              ///< name of the statistic, see NamedStatistic
 
   /// The value of this result. With derivatives (Dual4), a worst case is replaced by a smooth approximation.
   /// @param sharpness  sharpness of the smooth approximation

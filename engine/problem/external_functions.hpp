@@ -18,7 +18,7 @@ struct ExternalValue {
   double value = 0;
   double seconds = 0;        ///< time of the call [s]
   std::string failure = {};  ///< why the call failed; "" if it succeeded
-  bool is_computed = false;  ///< false after a stop request
+  bool is_computed = false;  ///< false: the value has not been computed because of a stop request
 };
 
 /// Calls the functions of a study.
@@ -40,11 +40,12 @@ class FunctionCaller {
 /// The caller must be set before designs are evaluated.
 class ExternalFunctions {
  public:
-  std::shared_ptr<FunctionCaller> caller;  ///< null: functions are not called (results are only displayed)
+  std::shared_ptr<FunctionCaller> caller;  ///< calls the functions; null: functions are not called, because results are
+                                           ///< only displayed
 
   /// Records the reason of a failure, unless a failure of the same function has been recorded before. Thread-safe.
   void note_failure(const std::string& call, const std::string& reason);
-  std::map<std::string, std::string> failures() const;  ///< reasons by function
+  std::map<std::string, std::string> failures() const;  ///< for each function that failed, the reason
 
  private:
   mutable std::mutex mutex_;

@@ -8,7 +8,7 @@ namespace pkm {
 namespace {
 
 constexpr std::size_t kMaxExamined = 64;
-// limit for the sum of the first evaluation times of the designs that are evaluated again [s]
+// Maximum sum of the first evaluation times of the designs that are evaluated again [s].
 constexpr double kMaxSeconds = 1;
 
 /// Replaces each number of a reason by "#", except numbers within names ("l_11").

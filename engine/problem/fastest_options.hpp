@@ -15,14 +15,15 @@ std::vector<OptionSpec> fastest_options();
 /// The fastest motion along the path of the motion named in the options, for any design.
 class FastestOfDesign {
  public:
-  /// Throws std::invalid_argument with a message if the limits do not bound the motion, or if it has no fastest one.
+  /// Throws std::invalid_argument with a message if the limits do not bound the speed of the motion, or if the motion
+  /// has no fastest execution.
   FastestOfDesign(const EntryContext& context, FastestLaw law);
 
   const DesignMotion& motion() const { return motion_; }
   DesignWithLimits with_limits(const Mechanism& mechanism, std::span<const double> parameters) const {
     return {mechanism, parameters, mode_, limits_, wrench_};
   }
-  /// Moves of the motion with the study's own parameters.
+  /// Moves of the motion for the parameters that the study itself defines.
   const MovesOfMotion& moves() const { return *moves_; }
   /// Calls work(moves, times, design) with the shortest times of a design, and returns its result. Throws DesignError
   /// if the design cannot perform the motion at any speed.
@@ -37,7 +38,8 @@ class FastestOfDesign {
   std::string why_undefined(const DesignView<double>& design) const;
 
  private:
-  /// The moves of a motion that depends on the design. Throws DesignError if it has no moves, or corners.
+  /// The moves of a motion that depends on the design. Throws DesignError if the motion has no moves, or has a corner
+  /// at which it does not stop.
   MovesOfMotion moves_of(std::span<const double> parameters) const;
 
   MotionLimits limits_;

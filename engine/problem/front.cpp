@@ -85,7 +85,7 @@ std::size_t compromise(const Scores& front) {
 }
 
 std::vector<std::size_t> knees(const Scores& front) {
-  constexpr double kRadius = 0.2;  // radius of the neighbourhood, in normalised scores
+  constexpr double kRadius = 0.2;  // radius of the neighbourhood of a design, in normalised scores
   constexpr double kMinGain =
       0.01;  // minimum cost advantage over the extreme points; excludes their neighbours and rounding effects
   const Scores scaled = normalised(front);
@@ -93,7 +93,7 @@ std::vector<std::size_t> knees(const Scores& front) {
   const std::vector<double> cost = sums(scaled);
   std::vector<std::size_t> order = indices(front), found;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cost[a] < cost[b]; });
-  double extreme_cost = std::numeric_limits<double>::infinity();  // minimum over the extreme points
+  double extreme_cost = std::numeric_limits<double>::infinity();  // minimum of the extreme points' costs
   for (std::size_t k = 0; k < front.objectives; ++k)
     for (std::size_t i = 0; i < front.size(); ++i)
       if (extent.range(k) > 0 && scaled[i][k] == 0) extreme_cost = std::min(extreme_cost, cost[i]);
@@ -111,7 +111,8 @@ std::vector<std::size_t> select_representatives(const Scores& front, std::size_t
   std::vector<std::size_t> chosen;
   if (count == 0) return chosen;
   const Scores scaled = normalised(front);
-  std::vector<double> away(n, std::numeric_limits<double>::infinity());  // distance to the nearest chosen design
+  // For each design, its distance to the nearest chosen design.
+  std::vector<double> away(n, std::numeric_limits<double>::infinity());
   const auto choose = [&](std::size_t i) {
     if (chosen.size() == count || away[i] == 0) return;
     chosen.push_back(i);

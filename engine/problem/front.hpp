@@ -12,7 +12,7 @@
 namespace pkm {
 
 /// A Pareto front: the feasible non-dominated designs of a stage, up to the size limit of the archive. In a solver
-/// stage, the results of its starts.
+/// stage, the designs are results of its starts.
 struct Front {
   std::vector<std::int64_t> rows;  ///< rows of the stage's table, sorted by the first objective, best first
   /// Reference point of the hypervolume, in the objectives' units, and the hypervolume. Only designs that are better
@@ -21,7 +21,8 @@ struct Front {
   double hypervolume = std::numeric_limits<double>::quiet_NaN();
   /// Spacing of those designs of the front that are in the population (crowding.hpp); NaN: unknown.
   double spread = std::numeric_limits<double>::quiet_NaN();
-  double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< distance to the reference front; NaN without one
+  double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< distance IGD+ to the known reference front; NaN if
+                                                               ///< there is no reference front
 };
 
 /// Objective vectors of several designs, row by row, with signs such that smaller scores are better.

@@ -8,7 +8,7 @@ namespace {
 
 constexpr const char* kSize = "size";
 
-/// The numbers of "3:1". Throws std::invalid_argument with one sentence if there are not `count` positive ones.
+/// Parses a ratio such as "3:1". Throws std::invalid_argument with one sentence if there are not `count` positive ones.
 std::vector<double> parse_ratio(const std::string& text, const std::vector<std::string>& dimensions) {
   std::vector<double> ratio;
   bool is_valid = true;

@@ -18,7 +18,7 @@ std::string three_digits(double value) {
   return text;
 }
 
-/// "40 designs", "1 pose sampled for the best-ranked design".
+/// Number of samples as text, such as "40 designs" or "1 pose sampled for the best-ranked design".
 std::string count_text(std::size_t count, const std::string& sample) {
   const auto noun_end = std::min(sample.find(' '), sample.size());
   return std::to_string(count) + " " + sample.substr(0, noun_end) + (count == 1 ? "" : "s") + sample.substr(noun_end);
@@ -38,7 +38,7 @@ std::size_t MarginTally::index_of(const std::string& name) {
 
 void MarginTally::add(const std::vector<std::pair<std::string, double>>& margins) {
   ++samples_;
-  // indices of the margins of this sample that are not NaN, and whether the sample satisfies each of them
+  // Indices of those margins of this sample that are not NaN, and whether the sample satisfies each of them.
   std::vector<std::pair<std::size_t, bool>> known;
   for (const auto& [name, margin] : margins) {
     if (std::isnan(margin)) continue;

@@ -28,7 +28,7 @@ class MarginTally {
   struct Count {
     std::string name;
     std::size_t known = 0, satisfied = 0;
-    double closest = 0;  ///< maximum of the negative values of this margin, i.e. the smallest violation
+    double closest = 0;  ///< maximum of the negative values of the margin, i.e. the smallest violation
     /// For each earlier margin, the number of samples in which both margins are known.
     std::vector<std::size_t> known_with = {};
     /// For each earlier margin, the number of samples that satisfy both margins.

@@ -35,7 +35,7 @@ using OutputInfo = MarginInfo;
 struct EvaluatedDesign {
   std::span<const double> design;
   EvaluationSlot slot;
-  double seconds = 0;  ///< additional time of its evaluation [s]
+  double seconds = 0;  ///< time [s] that Problem::complete() spends on this design
   bool is_complete = false;
 };
 
@@ -63,7 +63,7 @@ class Problem {
   virtual void complete([[maybe_unused]] std::span<EvaluatedDesign> rows) const {}
   /// Whether evaluate() must be followed by complete().
   virtual bool needs_completion() const { return false; }
-  /// Empty if the problem supports Detail::derivatives; otherwise the reason why not.
+  /// The reason why the problem does not support Detail::derivatives; empty if it does.
   virtual Unsupported why_no_derivatives() const { return "the problem gives no derivatives"; }
 
   EvaluationShape shape(Detail detail = Detail::enough) const {

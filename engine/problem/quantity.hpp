@@ -36,7 +36,7 @@ class Quantity {
   virtual double value(const DesignView<double>& design) const = 0;
   /// The value with derivatives for gradient solvers; for a non-smooth value (a worst case), a smooth approximation.
   virtual Dual4 smooth(const DesignView<Dual4>& design) const = 0;
-  /// Empty if smooth() is supported; otherwise the reason why not.
+  /// The reason why smooth() is not supported; empty if it is supported.
   virtual Unsupported why_no_derivatives() const { return {}; }
   /// The reason why the value is not finite; "" if no specific reason is known.
   virtual std::string why_undefined(const DesignView<double>&) const { return {}; }
@@ -85,7 +85,7 @@ std::unique_ptr<const Quantity> make_quantity_without_derivatives(F function, co
 struct Region {
   std::string name;
   WorkspacePlan plan;
-  FieldRequest request;  ///< union over all quantities that use the region
+  FieldRequest request;  ///< fields of the workspace analysis that the quantities of the region need
 };
 
 /// Input of a catalogue entry when a study uses it.
@@ -113,19 +113,20 @@ inline std::vector<OptionSpec> no_options(const MechanismInfo&) { return {}; }
 /// An entry of the catalogue of objectives.
 struct ObjectiveEntry {
   std::string name;
-  std::string meaning;                        ///< one line
-  Direction direction = Direction::maximise;  ///< default
+  std::string meaning;                        ///< description of the objective, one line
+  Direction direction = Direction::maximise;  ///< direction of optimisation unless the study sets another one
   std::vector<OptionSpec> options = {};
   std::function<std::string(const EntryContext&)> unit = unit_one;
   std::function<Unsupported(const Mechanism&)> refusal =
-      supports_every_mechanism;  ///< empty if the mechanism supports it
+      supports_every_mechanism;  ///< reason why a mechanism does not support the objective; empty if it does
   /// Adds the fields that the workspace analysis has to compute.
   std::function<void(const EntryContext&, FieldRequest&)> request = no_request;
   std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// Description of the objective with given options; nullptr: `meaning`.
   std::function<std::string(const EntryContext&)> detail = nullptr;
-  std::function<Range(const EntryContext&)> range = unbounded;  ///< range of its values
-  bool uses_workspace = true;  ///< uses the analysis of the workspace or of a region; false: depends on the design only
+  std::function<Range(const EntryContext&)> range = unbounded;  ///< range of the objective's values
+  bool uses_workspace = true;  ///< true: the objective uses the analysis of the workspace or of a region; false: it
+                               ///< depends on the design only
   /// Whether the objective with given options uses the workspace analysis; nullptr: `uses_workspace` holds for all.
   bool (*needs_workspace)(const EntryContext&) = nullptr;
 
@@ -139,11 +140,13 @@ struct ConstraintEntry {
   std::string meaning;
   /// The options may depend on the mechanism (names of its limits).
   std::vector<OptionSpec> (*options)(const MechanismInfo&) = no_options;
-  std::function<std::string(const EntryContext&)> unit = nullptr;  ///< nullptr for pose-level constraints
+  std::function<std::string(const EntryContext&)> unit = nullptr;  ///< unit of the margin; nullptr for pose-level
+                                                                   ///< constraints
   std::function<Unsupported(const Mechanism&)> refusal = supports_every_mechanism;
   /// Pose-level only: the thresholds that the constraint sets. The reader merges them; setting one twice is an error.
   LimitSpec (*limits)(const MechanismInfo&, const Options&) = nullptr;
-  /// nullptr for pose-level constraints. Throws std::invalid_argument with a sentence if an option has an unknown name.
+  /// Creates the constraint; nullptr for pose-level constraints. Throws std::invalid_argument with a sentence if an
+  /// option has an unknown name.
   std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// Whether the constraint, with the given options, needs the workspace analysis; nullptr: never.
   bool (*needs_workspace)(const EntryContext&) = nullptr;

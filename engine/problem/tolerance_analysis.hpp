@@ -16,7 +16,7 @@ struct QuantityGradient {
   std::string name, unit;
   double value;
   double worse_sign;       ///< -1 or 1: sign of a change of the value that makes the quantity worse
-  std::vector<double> by;  ///< derivatives with respect to all parameters [SI]
+  std::vector<double> by;  ///< derivatives of the quantity with respect to all parameters [SI]
 };
 
 /// The gradients of all objectives, then of all margins. Precondition: the problem has derivatives.

@@ -6,7 +6,7 @@ namespace pkm {
 
 VolumeBounds verify_volume(const DesignProblem& problem, DesignReport& report, double gap,
                            const std::function<bool()>& stop) {
-  // rounding errors of closed forms, relative to the volume; the error estimate does not include them
+  // Rounding errors of closed forms, relative to the volume; the error estimate does not include them.
   constexpr double kRoundoff = 1e-9;
   const ProblemParts& parts = problem.of(report.parameters).parts();
   const VolumeBounds bounds =

@@ -10,7 +10,8 @@
 namespace pkm {
 namespace {
 
-// For a rotation that the study fixes, the workspace is analysed at several values of the rotation, with these numbers:
+// If the study fixes the rotation, the workspace is analysed at several values of the rotation, with the following
+// numbers.
 constexpr std::int64_t kCellsPerAxis = 16;   // number of voxels along each swept axis
 constexpr std::size_t kFixedRotations = 13;  // number of values of the rotation
 
@@ -20,7 +21,7 @@ struct CouplingByRotation {
   std::vector<WorkspaceResult<double>> surveys;
 };
 
-/// Used if the study sweeps the rotation: groups the cells of the workspace by the value of the rotation.
+/// If the study sweeps the rotation: groups the cells of the workspace by the value of the rotation.
 CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size_t axis, std::size_t limbs) {
   CouplingByRotation result;
   const VoxelGrid grid = workspace.grid();
@@ -38,7 +39,7 @@ CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size
   return result;
 }
 
-/// Used if the study fixes the rotation: analyses the workspace on coarse voxels at several values of the rotation,
+/// If the study fixes the rotation: analyses the workspace on coarse voxels at several values of the rotation,
 /// within the range of it in which poses are feasible.
 /// @param fixed  index of the rotation in WorkspaceFields::fixed
 CouplingByRotation analyse_at_rotations(const ShownDesigns& shown, const ShownDesign& design, std::size_t fixed) {

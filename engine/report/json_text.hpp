@@ -25,7 +25,7 @@ inline std::string json_text(const Json& json) {
 }
 
 /// JSON object of a coordinate or a joint: { name, unit, role }. The role is "rotation" for an angle, the name itself
-/// for the Cartesian coordinates "x", "y" and "z", and "other" for all others.
+/// for the Cartesian coordinates "x", "y" and "z", and "other" for any other length.
 inline Json axis_data(const std::string& name, const std::string& unit) {
   const bool is_cartesian = name == "x" || name == "y" || name == "z";
   return {{"name", name}, {"unit", unit}, {"role", unit == "rad" ? "rotation" : is_cartesian ? name : "other"}};

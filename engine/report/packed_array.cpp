@@ -78,7 +78,7 @@ std::string packed_quantised(std::span<const double> values) {
     lower = std::min(lower, value);
     upper = std::max(upper, value);
   }
-  if (!(lower <= upper)) lower = upper = 0;  // no value is finite
+  if (!(lower <= upper)) lower = upper = 0;  // none of the values is finite
   std::vector<std::uint16_t> levels;
   levels.reserve(values.size());
   for (const double value : values) {

@@ -32,7 +32,8 @@ Json front_data(const PageStudy& page);
 Json design_data(const ShownDesigns& shown);
 /// The feasible cells of each design with their fields, and the boundary surface with the fields at its vertices.
 Json workspace_data(const ShownDesigns& shown);
-/// The feasible cells and the boundary surface, from the voxel map in the study file; without fields.
+/// The feasible cells and the boundary surface of the best design, without fields, from the voxel map in the study
+/// file.
 Json workspace_data(const StudyContents& contents);
 /// The links of each design at all slider positions of the page and along the motions, and the dimensions of the
 /// design.
@@ -43,10 +44,10 @@ Json coupling_data(const ShownDesigns& shown);
 /// Positions, speeds, forces and power of the joints along the study's motions.
 Json motions_data(const ShownDesigns& shown);
 
-/// The table of a comparison in a task, the workspaces, and the loads along the motions.
+/// The table of a comparison of robots in a task, the workspaces, and the loads along the motions.
 Json task_data(const TaskComparison& comparison);
 /// The feasible cells and the boundary surface of a workspace, without fields.
-/// @param found  with the fields `feasible` and `margin`
+/// @param found  workspace, which contains the fields `feasible` and `margin`
 Json plain_workspace(const std::string& name, const WorkspaceFields& found);
 
 }  // namespace pkm

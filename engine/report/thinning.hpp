@@ -6,8 +6,8 @@
 
 namespace pkm {
 
-/// Every stride-th index of [0, count), in addition the first and the last one. The stride is the smallest one that
-/// leaves at most `max_count` (>= 2) indices.
+/// Selects from the indices [0, count) every stride-th one, and in addition the first and the last one. The stride is
+/// the smallest one that leaves at most `max_count` (>= 2) indices.
 struct Thinning {
   std::size_t stride = 1;
   std::vector<std::size_t> indices;

@@ -16,16 +16,18 @@ namespace pkm {
 /// is set, the best design is selected.
 struct DesignChoice {
   bool baseline = false;
-  std::optional<std::int64_t> generation;  ///< from 0, as listed by `pkmopt show`
-  std::optional<std::int64_t> individual;  ///< position in the population of `generation`, from 1
-  std::optional<std::int64_t> front;       ///< point of a stage's Pareto front, from 1
-  std::optional<std::int64_t> stage;       ///< stage of `generation` or `front`, from 1; default: the last that has one
+  std::optional<std::int64_t> generation;  ///< number of the generation, from 0, as listed by `pkmopt show`
+  std::optional<std::int64_t> individual;  ///< position of the design in the population of `generation`, from 1
+  std::optional<std::int64_t> front;       ///< number of a point of a stage's Pareto front, from 1
+  std::optional<std::int64_t> stage;       ///< number of the stage to which `generation` or `front` refers, from 1;
+                                           ///< default: the last stage that has one
 };
 
 struct ChosenDesign {
-  std::string words;               ///< description: "individual 3 of generation 12 of stage 1"
-  std::string file_name;           ///< the description as part of a file name: "stage-1-generation-12-individual-3"
-  std::vector<double> parameters;  ///< all parameters of the mechanism, SI
+  std::string words;               ///< description of the design, such as "individual 3 of generation 12 of stage 1"
+  std::string file_name;           ///< the description in a form for file names, such as
+                                   ///< "stage-1-generation-12-individual-3"
+  std::vector<double> parameters;  ///< values of all parameters of the mechanism [SI]
 };
 
 /// Selects the design. Throws ConfigError with the option (--generation ..) and its valid values if the file has no

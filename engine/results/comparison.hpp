@@ -16,12 +16,12 @@ namespace pkm {
 /// Difference of an objective value from the baseline's value.
 struct Gain {
   double percent = 0;  ///< 100 (value - baseline) / |baseline|
-  bool worse = false;  ///< the value is worse in the objective's direction
+  bool worse = false;  ///< true: the value is worse than that of the baseline, in the objective's direction
 };
 /// @return std::nullopt if the baseline's value is 0 or one of the values is NaN
 std::optional<Gain> gain_over(double baseline, double value, Direction direction);
 
-/// The best evaluation recorded so far, also of a study that has not ended. Volume and cells are not set: they are
+/// The best evaluation recorded so far; the study need not have ended. Volume and cells are not set: they are
 /// computed only when a study ends.
 /// @return std::nullopt if nothing has been evaluated
 std::optional<DesignRecord> best_so_far(const StudyContents& contents);
@@ -32,7 +32,7 @@ std::optional<DesignRecord> best_so_far(const StudyContents& contents);
 /// @return std::nullopt if the study has found a useful design, or has not finished
 std::optional<Diagnosis> diagnose(const StudyContents& contents, const DesignProblem* problem);
 
-/// Counts the failed evaluations of all stages and finds the reasons of some.
+/// Counts the failed evaluations of all stages and finds the reasons of some of them.
 /// @param problem  the study's problem, used to evaluate designs again; null: no reasons are found
 Failures collect_failures(const StudyContents& contents, const DesignProblem* problem);
 
@@ -41,8 +41,8 @@ Failures collect_failures(const StudyContents& contents, const DesignProblem* pr
 /// workspace is empty: "empty workspace".
 std::string best_design_label(const StudyContents& contents);
 
-/// One sentence for each final design whose exact volume lies outside its certified bounds, which indicates a numerical
-/// error.
+/// For each final design whose exact volume lies outside its certified bounds, one sentence; such a contradiction
+/// indicates a numerical error.
 std::vector<std::string> contradicted(const StudyContents& contents);
 
 /// Index of the most negative margin, i.e. of the most violated constraint; std::nullopt if all are satisfied.

@@ -12,16 +12,18 @@
 namespace pkm {
 
 struct DesignTable {
-  /// One design. If the values in `record` were computed by voxels, `exact` contains those of the exact method.
+  /// One design of the table. If the values in `record` were computed by voxels, `exact` contains those of the exact
+  /// method.
   struct Column {
     std::string name;
     std::optional<DesignRecord> record, exact;
   };
-  /// One quantity of all designs; std::nullopt where the value is unknown.
+  /// A line of the table: one quantity of all designs; std::nullopt where the value is unknown.
   struct Line {
     std::string kind;  ///< "variable", "objective", "output", "constraint" or "certified" (bounds of the volume)
     std::string name, unit, meaning;
-    std::vector<std::optional<double>> values, published;  ///< one value per column; one value per reference design
+    std::vector<std::optional<double>> values, published;  ///< values: one for each column; published: one for each
+                                                           ///< reference design
     std::optional<Gain> gain;                              ///< gain of the first column over the baseline
   };
   std::vector<Column> columns;  ///< best design first, baseline last; empty while nothing has been evaluated

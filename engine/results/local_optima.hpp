@@ -8,7 +8,8 @@
 
 namespace pkm {
 
-/// Indices of the starts, best final design first; in their own order if there are several objectives.
+/// Indices of the starts, sorted by their final designs, the best first; if there are several objectives, in the order
+/// of the starts.
 std::vector<std::size_t> order_by_result(const ProblemRecord& problem, const StageRecord& stage);
 
 /// Number of the local optimum that each start reached, 1 for the best; 0 if the start did not converge to a feasible

@@ -16,7 +16,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::size_t kSamples = 201;  // samples of each motion, both ends included
+constexpr std::size_t kSamples = 201;  // number of samples of each motion, both ends included
 
 /// Throws ConfigError if a table of the task has a key that is not a coordinate of any robot.
 void check_coordinates(const TomlValue& table, const SourceLocation& place,
@@ -77,7 +77,7 @@ std::vector<AxisInfo> axes_of(const std::vector<TaskEvaluation>& evaluations, co
   return axes;
 }
 
-/// The regions in the frame of the task; each axis from the first robot that has it.
+/// The regions in the frame of the task; the range along each axis is that of the first robot that has this axis.
 std::vector<TaskBox> boxes_of(const Task& task, const std::vector<TaskEvaluation>& evaluations,
                               const std::vector<AxisInfo>& axes) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -126,7 +126,7 @@ std::array<double, 3> middle_of(const TaskComparison& comparison) {
   return middle;
 }
 
-/// A robot along a motion, and the lines on it.
+/// Computes the values of a robot along a motion, and appends the lines of the comparison for this motion.
 /// @param named  null if the robot refuses the motion, see `why_refused`
 TaskMotion compute_motion(const TaskComparison& comparison, const Task& task, const TaskEvaluation& evaluation,
                           const std::string& name, const DesignMotion* named, const std::string& why_refused,
@@ -164,7 +164,8 @@ TaskMotion compute_motion(const TaskComparison& comparison, const Task& task, co
   return result;
 }
 
-/// The lines on a region, of which `evaluation` has all but the scale.
+/// Appends the lines of the comparison for a region. All of them are in `evaluation`, except the scale, which is
+/// computed here.
 /// @param region  null if the robot refuses it
 void append_region(const TaskEvaluation& evaluation, const std::string& name, const Region* region,
                    ComparedRobot& robot) {
@@ -233,7 +234,7 @@ std::string ComparedRobot::verdict() const {
   if (const TaskValue* const line = violated())
     return std::isnan(line->value) ? "unknown: " + line->name : "no: " + line->name;
   const bool is_asked = std::ranges::any_of(values, [](const TaskValue& line) { return line.required.has_value(); });
-  return is_asked ? "yes" : "nothing is asked";
+  return is_asked ? "yes" : "the task has no requirements";
 }
 
 TaskComparison compare_in_task(const Task& task, const std::vector<TaskRobot>& robots, const Catalogues& catalogues,

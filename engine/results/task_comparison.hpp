@@ -14,15 +14,16 @@ namespace pkm {
 
 /// A value over the time of a motion, at equidistant times including both ends.
 struct TaskCurve {
-  std::string name, unit;      ///< "power of all drives", "W"
-  std::vector<double> values;  ///< NaN where undefined
+  std::string name, unit;      ///< name and unit of the value, such as "power of all drives", "W"
+  std::vector<double> values;  ///< values at these times; NaN: undefined
 };
 
 /// A robot along a motion of the task. If it refuses the motion, there are neither curves nor a path.
 struct TaskMotion {
   std::string name;
-  double duration = 0;            ///< [s]
-  std::vector<TaskCurve> curves;  ///< those that the robot has
+  double duration = 0;            ///< duration of the motion [s]
+  std::vector<TaskCurve> curves;  ///< values of the robot over the time; values that the robot does not have are
+                                  ///< omitted
   /// Positions along the motion in the frame of the task, in the order of TaskComparison::axes; NaN for a coordinate
   /// that the robot lacks.
   std::vector<std::array<double, 3>> path;
@@ -39,12 +40,13 @@ struct ComparedRobot {
   /// Workspace over those axes of the comparison that the robot has, in the frame of the robot, with the fields
   /// `feasible` and `margin`. The other coordinates have the values of the task.
   std::optional<WorkspaceFields> workspace;
-  std::string why_no_workspace = {};  ///< why there is none
+  std::string why_no_workspace = {};  ///< reason why there is no workspace; "" if there is one
 
-  /// The first part of the task that the robot cannot perform; otherwise the first of which this is unknown; null if
-  /// there is neither.
+  /// The first part of the task that the robot cannot perform; if there is none, the first part for which it is unknown
+  /// whether the robot can perform it; null if there is neither.
   const TaskValue* violated() const;
-  /// "yes", "no: bin: margin", "unknown: ..", or "nothing is asked".
+  /// Whether the robot can perform the task, as text: "yes", "no: bin: margin", "unknown: ..", or "the task has no
+  /// requirements".
   std::string verdict() const;
 };
 
@@ -70,7 +72,7 @@ struct TaskComparison {
 TaskComparison compare_in_task(const Task& task, const std::vector<TaskRobot>& robots, const Catalogues& catalogues,
                                std::int64_t cells = 40);
 
-/// Values, units and names for people: mm for lengths and deg for angles. @return value and unit
+/// Converts a value to the unit in which people read it: mm for lengths and deg for angles. @return value and unit
 std::pair<double, std::string> in_display_unit(double value, const std::string& unit);
 
 }  // namespace pkm

@@ -16,8 +16,8 @@ using JointValues = std::optional<AxisVector<double>> TrajectoryPoint::*;
 
 /// A load of the drives that is compared among drives of one kind.
 struct LoadKind {
-  const char *speed, *force;            ///< names
-  const char *speed_unit, *force_unit;  ///< SI
+  const char *speed, *force;            ///< names of the speed and of the force
+  const char *speed_unit, *force_unit;  ///< SI units of the speed and of the force
   bool turns;
 };
 constexpr LoadKind kLoadKinds[] = {{"angular speed", "torque", "rad/s", "N m", true},
@@ -25,7 +25,7 @@ constexpr LoadKind kLoadKinds[] = {{"angular speed", "torque", "rad/s", "N m", t
 
 std::string place_of(const TrajectoryPoint& point) { return "at t = " + with_unit(point.motion.time, "s"); }
 
-/// Why a quantity of joints is undefined along the motion: at which sample it is, and why.
+/// The reason why a quantity of the joints is undefined along the motion, with the sample at which it is undefined.
 std::string why_undefined_along(const Trajectory& found, JointValues values) {
   if (found.points.empty()) return "the robot refuses the motion";
   for (const TrajectoryPoint& point : found.points)
@@ -34,8 +34,8 @@ std::string why_undefined_along(const Trajectory& found, JointValues values) {
   return {};
 }
 
-/// Maximum and root mean square over the samples of the largest magnitude, and of the magnitudes of the worst joint,
-/// among the joints of a kind. Both need a value at every sample.
+/// For the joints of one kind: maximum of the magnitude over all joints and samples, and maximum over the joints of the
+/// root mean square over the samples. Every sample must have a value.
 struct PeakAndRms {
   double peak = 0, rms = 0;
 };
@@ -92,7 +92,7 @@ TaskValue drive_reserve(TaskValue line, const Mechanism& mechanism, const Trajec
   return line;
 }
 
-/// Minimum over the samples, or why it is undefined.
+/// Minimum of a value over the samples, or the reason why it is undefined.
 template <class ValueOf>
 void set_minimum(TaskValue& line, const Trajectory& found, const ValueOf& value_of) {
   if (found.points.empty()) return;
@@ -101,7 +101,7 @@ void set_minimum(TaskValue& line, const Trajectory& found, const ValueOf& value_
     const double value = value_of(point);
     if (std::isnan(value)) {
       line.reason = why_impossible(found);
-      if (line.reason.empty()) line.reason = "it is undefined " + place_of(point);
+      if (line.reason.empty()) line.reason = "the value is undefined " + place_of(point);
       return;
     }
     least = std::fmin(least, value);

@@ -9,15 +9,16 @@
 
 namespace pkm {
 
-/// Lines of the comparison, in the same order for every robot.
+/// Values of a robot along a motion, as lines of the comparison; their order is the same for every robot.
 /// @param motion         name of the motion
-/// @param found          the robot along the motion; without points: all values are undefined
+/// @param found          trajectory of the robot along the motion; if it has no points, all values are undefined
 /// @param needs_drives   true if the task has drive trains
-/// @param why_no_drives  why the robot cannot have them
+/// @param why_no_drives  reason why the robot cannot have these drive trains
 std::vector<TaskValue> values_along(const std::string& motion, const Mechanism& mechanism, const Trajectory& found,
                                     bool needs_drives, const Unsupported& why_no_drives);
 
-/// Why the robot cannot be assembled, or is singular, at a sample of the motion; "" if there is no such sample.
+/// The reason why the robot cannot perform the motion: it cannot be assembled, or is singular, at a sample; "" if there
+/// is no such sample.
 std::string why_impossible(const Trajectory& found);
 
 /// Power, and the largest speeds and forces among the prismatic and among the revolute drives, over time.

@@ -13,8 +13,9 @@
 namespace pkm {
 namespace {
 
-/// The value of a coordinate that the comparison does not sweep: that of the task's first region, otherwise of its
-/// first motion, otherwise the default value of the design. Throws std::invalid_argument if there is none.
+/// The value of a coordinate that the comparison does not sweep: its value in the first region of the task or, if there
+/// is none, in the first motion, otherwise the default value of the design. Throws std::invalid_argument if there is
+/// none.
 double value_outside_axes(const TaskEvaluation& evaluation, const ComparedRobot& robot, int coordinate) {
   const ProblemParts& parts = evaluation.study.problem->parts();
   for (const Region& region : parts.regions)
@@ -32,7 +33,8 @@ int coordinate_index(const MechanismInfo& info, const std::string& name) {
   return found ? static_cast<int>(found - info.coordinates.data()) : -1;
 }
 
-// Two passes: the cells of the first find the extent of the workspace, those of the second divide it.
+// The workspace is analysed twice: the cells of the first analysis find its extent, and those of the second analysis
+// divide this extent.
 std::optional<WorkspaceFields> workspace_over(const std::vector<AxisInfo>& axes, const TaskEvaluation& evaluation,
                                               const ComparedRobot& robot, std::int64_t cells) {
   const MechanismInfo& info = robot.mechanism->info();
@@ -40,7 +42,7 @@ std::optional<WorkspaceFields> workspace_over(const std::vector<AxisInfo>& axes,
   VoxelOptions voxels;
   for (const AxisInfo& axis : axes)
     if (const int coordinate = coordinate_index(info, axis.name); coordinate >= 0) plan.swept.push_back(coordinate);
-  if (plan.swept.empty()) throw std::invalid_argument("it has none of the coordinates " + join(names_of(axes)));
+  if (plan.swept.empty()) throw std::invalid_argument("the robot has none of the coordinates " + join(names_of(axes)));
   for (int i = 0; i < std::ssize(info.coordinates); ++i)
     if (!contains(plan.swept, i))
       plan.fixed.push_back({i, FixedCoordinate::Kind::value, value_outside_axes(evaluation, robot, i)});
@@ -109,7 +111,7 @@ std::vector<TaskValue> workspace_values(const std::vector<AxisInfo>& axes,
     return lines.emplace_back(TaskValue{.group = "", .name = "workspace: " + name, .reason = robot.why_no_workspace});
   };
   const char* const measures[] = {"length", "area", "volume"};
-  for (const std::size_t count : counts) {  // a volume before an area
+  for (const std::size_t count : counts) {  // volumes are listed before areas
     TaskValue& line = add(measures[count - 1]);
     if (swept == count) {
       line.value = workspace->volume;
@@ -149,7 +151,7 @@ std::string limiting_margin(const ComparedRobot& robot, const std::vector<Pose<d
   return name;
 }
 
-// The factor is searched upwards, and bisected where the first pose becomes infeasible.
+// The factor is increased in steps, and bisected where a pose becomes infeasible.
 TaskValue largest_scale(const Region& region, const ComparedRobot& robot, const std::vector<Pose<double>>& poses) {
   constexpr double kFirst = 0.05, kStep = 1.1, kLargest = 50;
   TaskValue line{.group = region.name, .name = region.name + ": scale", .unit = "1"};

@@ -19,18 +19,18 @@ int coordinate_index(const MechanismInfo& info, const std::string& name);
 std::optional<WorkspaceFields> workspace_over(const std::vector<AxisInfo>& axes, const TaskEvaluation& evaluation,
                                               const ComparedRobot& robot, std::int64_t cells);
 
-/// Lines on the size of the workspace.
+/// Values of a robot's workspace (its size), as lines of the comparison.
 /// @param counts  the numbers of axes over which workspaces of the compared robots extend: each has its own measure
 std::vector<TaskValue> workspace_values(const std::vector<AxisInfo>& axes,
                                         const std::set<std::size_t, std::greater<>>& counts,
                                         const ComparedRobot& robot);
 
-/// The name of the smallest margin over some poses; "" if there are no margins.
+/// Name of the margin with the smallest value over several poses; "" if there are no margins.
 std::string limiting_margin(const ComparedRobot& robot, const std::vector<Pose<double>>& poses);
 
 /// The largest factor by which the box of a region can be scaled about its centre so that all poses of a grid remain
 /// feasible.
-/// @param poses  the grid
+/// @param poses  grid of poses in the box
 TaskValue largest_scale(const Region& region, const ComparedRobot& robot, const std::vector<Pose<double>>& poses);
 
 }  // namespace pkm

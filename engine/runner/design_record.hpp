@@ -20,7 +20,7 @@ DesignRecord evaluate_design(const DesignProblem& problem, std::span<const doubl
 DesignRecord evaluate_design_after_rounding(const DesignProblem& problem, const std::vector<double>& parameters);
 
 /// Adds certified bounds of the volume to the record, unless its evaluation failed. Sets the status to failed if the
-/// computed volume lies outside them. Throws Stopped.
+/// computed volume lies outside them. Throws Stopped after a stop request.
 /// @param gap  requested gap of the bounds: upper minus lower bound, relative to their mean
 void add_certified_bounds(const DesignProblem& problem, double gap, DesignRecord& record);
 

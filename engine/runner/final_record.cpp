@@ -23,10 +23,12 @@ constexpr const char* kWideBounds = "certified bounds of the ";
 constexpr const char* kAlong = "along the motion ";
 constexpr const char* kReduced = "reduced by 0.1 %, the ";
 
-// relative reduction of the dimensions of a largest solid before it is certified; kReduced states it in notes
+// Relative reduction of the dimensions of a largest solid before it is certified; kReduced states it in notes.
 constexpr double kReduction = 1e-3;
-constexpr std::size_t kMaxSolidBoxes = 600'000;   // boxes examined per solid; takes some seconds
-constexpr std::size_t kMaxMotionBoxes = 200'000;  // time intervals examined per motion; takes some seconds
+// Maximum numbers of boxes examined for each solid, and of time intervals examined for each motion; each of them takes
+// some seconds.
+constexpr std::size_t kMaxSolidBoxes = 600'000;
+constexpr std::size_t kMaxMotionBoxes = 200'000;
 
 /// Number of cells of the voxel map of a study whose workspace is analysed by columns.
 constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};

@@ -35,8 +35,8 @@ std::vector<SensitivityRecord> sensitivities(const DesignProblem& problem, std::
   const auto& parameters = parts.mechanism->info().parameters;
   std::vector<SensitivityRecord> records;
   for (std::size_t p = 0; p < count; ++p) {
-    // total: derivative with respect to parameter p; scale: largest derivative with respect to a parameter of the same
-    // unit
+    // total: derivative with respect to parameter p; scale: largest magnitude of a derivative with respect to a
+    // parameter of the same unit
     double total = derivatives[1 + p], scale = 0;
     for (std::size_t other = 0; other < count; ++other)
       if (parameters[other].unit == parameters[p].unit) scale = std::fmax(scale, std::fabs(derivatives[1 + other]));

@@ -15,11 +15,11 @@ constexpr std::size_t kMaxDesigns = 64, kMinDesigns = 4;
 constexpr double kBudget = 50e-3, kMaxCost = 0.5;
 
 // Approximate times of the parts of a workspace analysis [s]:
-constexpr double kVoxelCost = 0.1e-9;   // for each voxel that is counted in batches
-constexpr double kSampleCost = 0.1e-6;  // for each pose at which pose quantities are evaluated
-// For each pose at which the full inverse kinematics or the distances between links are computed.
+constexpr double kVoxelCost = 0.1e-9;   // time for each voxel that is counted in batches
+constexpr double kSampleCost = 0.1e-6;  // time for each pose at which pose quantities are evaluated
+// Time for each pose at which the full inverse kinematics or the distances between links are computed.
 constexpr double kKinematicsCost = 2e-6;
-constexpr double kDesignTestCost = 20e-6;  // for each constraint on the design
+constexpr double kDesignTestCost = 20e-6;  // time [s] for each constraint that depends on the design alone
 constexpr double kColumnNodes = 5000;      // typical number of quadrature nodes of the exact method
 
 /// Estimated time of one workspace analysis [s].

@@ -58,7 +58,7 @@ std::string how_it_ended(int status) {
 
 }  // namespace
 
-/// What is needed to start a worker process: the interpreter, and the first message, which names the functions to load.
+/// Data for starting a worker process: the interpreter, and the first message, which names the functions to load.
 struct PythonWorkers::Setup {
   std::string program;
   std::string message;  ///< first message to the process, in JSON

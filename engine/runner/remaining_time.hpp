@@ -48,8 +48,9 @@ class RemainingTime {
     std::int64_t made;
   };
 
-  std::vector<double> stages_;   ///< maximum time of each stage [s]
-  std::vector<bool> is_solver_;  ///< true for solver stages, whose evaluation limit is rarely reached
+  std::vector<double> stages_;   ///< for each stage, its maximum time [s]
+  std::vector<bool> is_solver_;  ///< for each stage, whether it is a solver stage, whose evaluation limit is rarely
+                                 ///< reached
   double final_steps_;           ///< maximum time of the final steps [s]
   std::size_t stage_ = 0;        ///< index of the current stage
   Sample begin_ = {0, 0};        ///< state at the beginning of the current stage

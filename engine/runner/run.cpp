@@ -173,7 +173,7 @@ bool Run::has_stop_request() const {
 }
 
 bool Run::is_grace_period_over() {
-  constexpr double kGracePeriod = 0.1;  // time [s] within which most generations and final steps end by themselves
+  constexpr double kGracePeriod = 0.1;  // time [s] in which most generations and final steps end without being aborted
   if (!has_stop_request()) return false;
   const double now = seconds();
   double first = std::numeric_limits<double>::infinity();

@@ -58,7 +58,7 @@ class Run final : public Monitor {
 
   /// Rank 0 only: computes the final results unless the run is stopped, writes the file and returns the outcome.
   RunOutcome complete();
-  /// @return an outcome whose statistics on evaluations, parallel efficiency and messages are set
+  /// @return an outcome that contains only the statistics on evaluations, parallel efficiency and messages
   RunOutcome statistics() const;
   /// Computes the final results of the study, and stores them in its contents.
   void compute_final_results();

@@ -12,15 +12,15 @@ namespace pkm {
 /// - "best" (default): the best design of the earlier stages;
 /// - "best-of-basins": the best designs that have no better design nearby, see basins() in stage_starts.cpp;
 /// - "pareto": points spread over the front of the last stage that has found one; if there is none, as "best";
-/// - "none": none of these.
+/// - "none": no designs of earlier stages.
 /// The designs given by the option `designs` are added to them. Other optimisers get the best design of the earlier
 /// stages. If nothing was evaluated before the stage, see first_start_designs().
 std::vector<StartDesign> start_designs(const Study& study, const Stage& stage, const StudyContents& contents);
 
 /// The starting points of a stage before which nothing was evaluated: the best of the designs taken from another study
 /// (a solver with start = "best-of-basins" and other optimisers get several of them). If there are none, solvers and
-/// sweeps start from `base`. A solver with start = "none" gets neither. For solvers, the designs given by the option
-/// `designs` are added.
+/// sweeps start from `base`. A solver with start = "none" gets neither the designs of another study nor `base`. For
+/// solvers, the designs given by the option `designs` are added.
 /// @param base   the baseline or the centre of the bounds
 /// @param given  designs of another study, best first
 std::vector<StartDesign> first_start_designs(const DesignSpace& space, const Stage& stage, const StartDesign& base,

@@ -12,7 +12,7 @@ namespace pkm {
 class StudyOutput {
  public:
   /// @param lock  lock of the study at `path`; must outlive this object
-  /// @param existing  states whether the first write may replace an existing file
+  /// @param existing  whether the first write may replace an existing file
   StudyOutput(std::string path, const StudyLock& lock, Existing existing)
       : path_(std::move(path)), lock_(lock), existing_(existing) {}
 

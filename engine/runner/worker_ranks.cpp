@@ -76,7 +76,7 @@ void join_run(const std::string& message, const Catalogues& catalogues, const Pr
                            team_size(options.threads > 0 ? options.threads : ranks::threads()));
     apply_extensions(study, contents.extensions);
     Run(study, std::move(contents), nullptr, options, silent)();
-  } catch (const ReplayMismatch&) {  // rank 0 reports it
+  } catch (const ReplayMismatch&) {  // rank 0 reports the error
   } catch (const std::exception& error) {
     ranks::abort_all_ranks(message_of(error));
   }

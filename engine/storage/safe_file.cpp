@@ -62,7 +62,7 @@ std::string folder_of(const std::string& path) {
 /// report EINVAL or EROFS, which is ignored.
 void sync_folder(const std::string& path) {
   const Descriptor fd(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd.get() < 0) return;  // the folder can be written but not read
+  if (fd.get() < 0) return;  // the folder can be written to, but not read
   if (::fsync(fd.get()) != 0 && errno != EINVAL && errno != EROFS) fail(path, "its folder cannot be synced", errno);
 }
 
@@ -119,7 +119,7 @@ std::string link_target(const std::string& path) {
     if (!fs::is_symlink(fs::symlink_status(target, error))) return target.string();
     const fs::path next = fs::read_symlink(target, error);
     if (error) fail(path, "is a symbolic link that cannot be read", error.value());
-    target = target.parent_path() / next;  // the operator `/` gives `next` itself if that is an absolute path
+    target = target.parent_path() / next;  // if `next` is an absolute path, the operator `/` returns `next` itself
   }
   fail(path, "cannot be opened", ELOOP);
 }

@@ -33,7 +33,7 @@ struct ParameterRecord {
 /// The name of a value of a variable that is a choice from a catalogue. The values are 1, 2, .. in the order of the
 /// names.
 struct ChoiceName {
-  std::int64_t variable = 0;  ///< index into ProblemRecord::variables
+  std::int64_t variable = 0;  ///< index of the variable in ProblemRecord::variables
   std::string name;
 };
 
@@ -111,7 +111,8 @@ struct SensitivityRecord {
 
 /// First-order optimality (KKT conditions) of a stage's best design.
 struct OptimalityRecord {
-  double optimality = 0;  ///< relative KKT residual, defined in engine/optimisers/solvers/optimality.hpp
+  double optimality = 0;  ///< KKT residual relative to the objective, defined in
+                          ///< engine/optimisers/solvers/optimality.hpp
   std::vector<ActiveRecord> active;
   std::vector<SensitivityRecord> sensitivities;  ///< one element per parameter, in the order of the mechanism
 };

@@ -39,7 +39,7 @@ bool is_lock_file(int fd) {
   if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink > 1) return false;
   if (status.st_size > static_cast<off_t>(kMaxBytes)) return false;
   const std::string text = read_text(fd);
-  // A full disk may have truncated the signature.
+  // The text may be a part of the signature only, because a full disk may have truncated it.
   return text.starts_with(kLockSignature) || kLockSignature.starts_with(text);
 }
 

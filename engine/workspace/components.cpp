@@ -164,7 +164,7 @@ class ComponentFinder::Search {
   template <class Visit>
   void for_cells_near(const ConnectedComponents& components, const Pose<double>& pose, const Visit& visit) {
     constexpr std::int64_t kNear = 2;
-    std::array<double, 3> at{};  // in cells
+    std::array<double, 3> at{};  // position of the pose, in units of cells
     Cell from{}, end{1, 1, 1};
     for (std::size_t axis = 0; axis < axes_; ++axis) {
       const double value = pose[static_cast<std::size_t>(finder_.sweep_.swept[axis])];
@@ -272,7 +272,7 @@ ConnectedComponents ComponentFinder::find(std::span<const double> parameters, co
 
   DisjointSets sets(search.count());
   const auto is_joined = [&](std::size_t cell, std::size_t next) { return sets.root(cell) == sets.root(next); };
-  // faces between two cells, each represented by the cell in front of it along the axis
+  // Faces between two cells; a face is represented by the cell in front of it along the axis.
   std::vector<std::size_t> faces, rest;
   for (std::size_t axis = search.axes(); axis-- > 0;) {
     const auto next_of = [&](std::size_t cell) { return *search.next(cell, axis); };
@@ -288,8 +288,8 @@ ConnectedComponents ComponentFinder::find(std::span<const double> parameters, co
       const auto next = search.next(cell, axis);
       if (next && search.are_compatible(side[cell], side[*next]) && !is_joined(cell, *next)) rest.push_back(cell);
     }
-    // Consecutive faces that separate the same two sets are tested beginning with the middle one: if it joins the sets,
-    // the others need no test.
+    // Consecutive faces that separate the same two sets are tested beginning with the middle one: if the middle face
+    // connects the two sets, the other faces need no test.
     faces.clear();
     const auto pair_of = [&](std::size_t cell) { return std::pair(sets.root(cell), sets.root(next_of(cell))); };
     for (auto first = rest.begin(); first != rest.end();) {
@@ -311,7 +311,7 @@ ConnectedComponents ComponentFinder::find(std::span<const double> parameters, co
   std::vector<WorkspaceComponent> found;
   for (const std::size_t cell : cells) {
     if (!belongs(cell)) continue;
-    // the cell of its set with the lowest index, so that it has been visited before
+    // The cell of the set with the lowest index, which has therefore been visited before.
     const std::size_t root = sets.root(cell);
     if (root == cell) {
       found.push_back({.first = cell, .side = crossing_ == Crossing::allowed ? PoseSides::kSingular : side[cell]});
@@ -365,7 +365,8 @@ void ComponentFinder::find_members(std::span<const double> parameters, const Vox
                                    std::span<const Pose<double>> poses, Scratch& scratch,
                                    std::vector<std::int8_t>& inside) const {
   Search search(*this, parameters, map, scratch);
-  const std::size_t labels = components.all.size() + 1;  // the sets are those of the labels, followed by the poses
+  // The first elements of `sets` are the labels, the other elements are the poses.
+  const std::size_t labels = components.all.size() + 1;
   DisjointSets sets(labels + poses.size());
   std::vector<std::uint32_t> tried;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -399,7 +400,7 @@ ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, 
   const auto neighbour = [&](std::size_t cell, std::size_t k) {
     return k % 2 == 0 ? search.next(cell, k / 2) : search.previous(cell, k / 2);
   };
-  // Distances from the boundary of the component, in cells (breadth-first search).
+  // Compute the distances of the cells from the boundary of the component, in cells (breadth-first search).
   std::vector<std::uint32_t> distance(search.count(), 0);
   std::vector<std::size_t> wave;
   for (std::size_t cell = 0; cell < search.count(); ++cell) {
@@ -418,7 +419,7 @@ ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, 
         wave.push_back(*other);
       }
   const auto cost_of = [&](std::size_t cell) {
-    // distance 0: the component has no boundary
+    // The distance is 0 if the component has no boundary.
     const double d = distance[cell] == 0 ? std::numeric_limits<double>::infinity() : distance[cell];
     return 1 + 8 / (d * d);
   };
@@ -457,7 +458,8 @@ ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, 
   found.cells.push_back(search.pose(from));
   for (const std::size_t cell : cells) found.cells.push_back(search.centre(cell));
   found.cells.push_back(search.pose(to));
-  for (std::size_t i = 1; i < found.cells.size(); ++i)  // choose angles without jumps by a full turn
+  // Choose equivalent angles such that consecutive points do not differ by a full revolution.
+  for (std::size_t i = 1; i < found.cells.size(); ++i)
     for (std::size_t axis = 0; axis < search.axes(); ++axis) {
       if (!search.is_periodic(axis)) continue;
       double& angle = search.coordinate(found.cells[i], axis);
@@ -466,7 +468,7 @@ ComponentFinder::Path ComponentFinder::path(std::span<const double> parameters, 
     }
   const auto equal = [](const Pose<double>& a, const Pose<double>& b) { return std::ranges::equal(a, b); };
   found.cells.erase(std::unique(found.cells.begin(), found.cells.end(), equal), found.cells.end());
-  // From each corner, go straight to the farthest point that a free straight line connects with it.
+  // From each corner, continue with the farthest point that a feasible straight line connects with it.
   found.corners.push_back(found.cells.front());
   for (std::size_t i = 0; i + 1 < found.cells.size();) {
     std::size_t j = found.cells.size() - 1;

@@ -22,19 +22,21 @@ namespace pkm {
 
 struct WorkspaceComponent {
   std::int64_t cells = 0;
-  std::size_t first = 0;  ///< lowest index of its cells
-  std::int8_t side = 0;   ///< sign of det J; PoseSides::kSingular if components may cross singularities
+  std::size_t first = 0;  ///< lowest index of the component's cells
+  std::int8_t side = 0;   ///< sign of det J in the component; PoseSides::kSingular if components may cross
+                          ///< singularities
 };
 
 struct ConnectedComponents {
-  std::vector<std::uint32_t> label;     ///< by cell: number of its component, from 1; 0: the cell belongs to none
+  std::vector<std::uint32_t> label;     ///< for each cell, the number of its component, from 1; 0: the cell belongs to
+                                        ///< no component
   std::vector<WorkspaceComponent> all;  ///< component k has the number k + 1; the largest one comes first
 };
 
 /// Whether components end at singularities.
 enum class Crossing { forbidden, allowed };
 
-/// Immutable and thread-safe.
+/// Finds the connected components of voxel workspaces. Immutable and thread-safe.
 class ComponentFinder {
  public:
   /// Throws std::invalid_argument with one sentence if the plan is not supported: coordinates that are integrated over
@@ -55,12 +57,12 @@ class ComponentFinder {
   /// @return true if a cell of a component has a feasible neighbour that is singular or on the other side of the
   /// singularities
   bool ends_at_singularity(const VoxelMap& map, const ConnectedComponents& components, std::uint32_t label) const;
-  /// Determines which poses are in the component that holds a pose. Poses are connected by straight lines with the one
-  /// before and with cells near them, so that they can also connect components of the grid.
-  /// @param home    number of the component
+  /// Determines which poses are in the component that holds the home pose. Two consecutive poses, and a pose and a cell
+  /// near it, are connected if the straight line between them is feasible, so that poses can also connect components of
+  /// the grid.
+  /// @param home    number of the component that holds the home pose
   /// @param inside  receives for each pose 1 if it is in the component, 0 if it is in another one, and -1 if no cell
-  /// and
-  ///                no pose is connected with it
+  ///   and no pose is connected with it
   void find_members(std::span<const double> parameters, const VoxelMap& map, const ConnectedComponents& components,
                     std::uint32_t home, std::span<const Pose<double>> poses, Scratch& scratch,
                     std::vector<std::int8_t>& inside) const;
@@ -70,8 +72,9 @@ class ComponentFinder {
   /// whose sampled poses are feasible and on one side of the singularities. Throws DesignError like holding(), also if
   /// the two poses are in different components.
   struct Path {
-    std::vector<Pose<double>> cells;    ///< all points
-    std::vector<Pose<double>> corners;  ///< without those that a straight line can leave out
+    std::vector<Pose<double>> cells;    ///< all points of the polyline
+    std::vector<Pose<double>> corners;  ///< points of a shortened polyline, without the points that a straight line
+                                        ///< between others can replace
   };
   Path path(std::span<const double> parameters, const VoxelMap& map, const ConnectedComponents& components,
             const std::array<double, 3>& from, const std::array<double, 3>& to, Scratch& scratch) const;

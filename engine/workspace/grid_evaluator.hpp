@@ -41,7 +41,7 @@ struct GridBuffers {
   }
 };
 
-/// CRTP base. Self defines, accessible to this class,
+/// CRTP base class of voxel analyses. Self defines, accessible to this class,
 ///   Buffers                            its GridBuffers
 ///   start(parameters, buffers)         returns the design, a GriddedDesign or a class derived from it
 ///   find(design, number, block, buffer, result)

@@ -33,15 +33,17 @@ class HomeColumns final : public WithGradients<HomeColumns> {
  private:
   friend WithGradients<HomeColumns>;
 
-  /// The component of one design.
+  /// The component of the workspace of one design that contains the home pose.
   struct Home {
-    std::shared_ptr<const bool> of;  ///< HomeColumns::identity_ of the evaluator; null: none
+    std::shared_ptr<const bool> of;  ///< HomeColumns::identity_ of the evaluator that computed the members; null: no
+                                     ///< evaluator
     std::vector<double> parameters;
     VoxelMap map;
     ConnectedComponents components;
     std::uint32_t label = 0;
-    std::int8_t side = 0;    ///< side of the singularities to which columns are restricted; 0: both
-    bool is_single = false;  ///< true: it is the only component on this side
+    std::int8_t side = 0;    ///< side of the singularities to which the columns are restricted; 0: the columns are not
+                             ///< restricted
+    bool is_single = false;  ///< true: the component is the only one on this side
   };
   template <class S>
   struct Nodes {
@@ -51,12 +53,13 @@ class HomeColumns final : public WithGradients<HomeColumns> {
   };
   struct Analysis {
     std::once_flag is_prepared;
-    std::shared_ptr<const Mechanism> mechanism;  ///< null: the given one
+    std::shared_ptr<const Mechanism> mechanism;  ///< mechanism restricted to one side of the singularities; null: the
+                                                 ///< mechanism itself
     std::unique_ptr<const WorkspaceEvaluator> evaluator;
   };
 
   /// The columns on one side of the singularities, or on both. Each is prepared at its first use, because
-  /// most designs need only one of them. @param nodes  true: with the poses of all nodes
+  /// most designs need only one of them. @param nodes  true: the analysis also stores the poses of all nodes
   const WorkspaceEvaluator& analysis(std::int8_t side, bool nodes) const {
     Analysis& found = analyses_[static_cast<std::size_t>(side + 1)][nodes];
     std::call_once(found.is_prepared, [&] {
@@ -83,13 +86,14 @@ class HomeColumns final : public WithGradients<HomeColumns> {
         found.evaluator = mechanism->columns()->prepare(plan_, *plan_.columns(), request);
       } catch (const std::invalid_argument& reason) {
         if (side == 0) throw;
-        throw DesignError(ends + "which columns do not support: " + reason.what());  // with a remedy
+        throw DesignError(ends + "which columns do not support: " + reason.what());  // the reason names a remedy
       }
     });
     return *found.evaluator;
   }
 
-  /// The component of a design. The blocks of a gradient have the same values and share it.
+  /// The component of a design that contains the home pose. It is computed once for all blocks of derivatives, because
+  /// the design has the same values in all of them.
   template <class S>
   const Home& find_home(std::span<const S> parameters, Scratch& scratch) const {
     Home& home = scratch.get<Home>();
@@ -123,8 +127,9 @@ class HomeColumns final : public WithGradients<HomeColumns> {
     result.is_sampled = true;
   }
 
-  /// Copies the nodes of the component, with its share of the volume. The relative error includes the error of the
-  /// weights of the nodes, if there are others, and the weights of nodes that belong to no component.
+  /// Copies the nodes of the component, and computes its share of the volume. If the workspace has other nodes, too,
+  /// the relative error includes the error of the sum of all weights; it always includes the weights of nodes that
+  /// belong to no component.
   template <class S>
   void keep_members(const Home& home, Scratch& scratch, Nodes<S>& nodes, WorkspaceResult<S>& result) const {
     const WorkspaceResult<S>& all = nodes.all;
@@ -146,7 +151,7 @@ class HomeColumns final : public WithGradients<HomeColumns> {
     const bool is_whole = value_of(own) == value_of(total);
     result.clear(request_.fields);
     result.columns = all.columns;
-    if (!(value_of(own) > 0)) {  // it is narrower than the distances of the nodes
+    if (!(value_of(own) > 0)) {  // the component is narrower than the distances between the nodes
       result.error = 1;
       return;
     }
@@ -184,7 +189,7 @@ std::unique_ptr<const WorkspaceEvaluator> prepare_home_columns(const Mechanism& 
 }
 
 WorkspacePlan grid_of_components(const MechanismInfo& info, const WorkspacePlan& plan) {
-  constexpr std::array<std::int64_t, 3> kCells = {1024, 128, 32};  // along each axis, by number of axes
+  constexpr std::array<std::int64_t, 3> kCells = {1024, 128, 32};  // number of cells along each axis, by number of axes
   const ColumnOptions& columns = *plan.columns();
   VoxelOptions voxels{.box = columns.box};
   const std::size_t axes = sweep_of(info, plan).swept.size();

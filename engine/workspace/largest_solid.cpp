@@ -1,4 +1,4 @@
-// The search on the grid, and the results of the refinement.
+// Finds the largest solid in the workspace of a design: search on a voxel grid, and evaluation of the refined solid.
 #include "engine/workspace/largest_solid.hpp"
 
 #include <algorithm>
@@ -17,8 +17,9 @@
 namespace pkm {
 namespace {
 
-constexpr std::int64_t kCellsOfSearch = 40;                               // per axis, for plans of columns
-constexpr int kCoarseDensity = 2, kSampleDensity = 4, kFinalDensity = 6;  // intervals per radius
+constexpr std::int64_t kCellsOfSearch = 40;                               // number of cells along each axis, for plans
+                                                                          // of columns
+constexpr int kCoarseDensity = 2, kSampleDensity = 4, kFinalDensity = 6;  // number of sample intervals along a radius
 
 /// Determinant of the Jacobian G of a pose; NaN if it is undefined.
 double determinant_of(const PoseReport& report) {
@@ -152,7 +153,7 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
   LargestSolid none;
   none.solid.dimensions.assign(spec_.shape.balls(), 0.0);
 
-  // First search on the voxel grid: use cells that are feasible in all orientations and, if required, whose
+  // First, search on the voxel grid. Use the cells that are feasible in all orientations and, if required, whose
   // determinants have one sign.
   std::vector<std::uint8_t> good = map.feasible;
   std::vector<std::size_t> cells;
@@ -187,7 +188,7 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
     if (size > 0) sign /= size;
   }
 
-  // Then refine with the constraints themselves, first with few samples.
+  // Then refine the solid with the constraints themselves, first with few samples.
   SolidMargins constraints = margins(parameters, sign);
   SolidRefinement refinement(spec_, faces, constraints, *start);
   const SolidRefinement::Iterate coarse = refinement.run(coarse_samples_);
@@ -203,7 +204,8 @@ LargestSolid LargestSolidFinder::find(std::span<const double> parameters, const 
   for (std::size_t k = 0; k < last.points.size(); ++k) {
     const CriticalPoint& point = last.points[k];
     const double multiplier = last.multipliers[static_cast<Eigen::Index>(k)];
-    // maximum distance of a contact, in units of the size; minimum multiplier of an active constraint
+    // kTouches: maximum distance of a contact from the boundary, in units of the size; kActive: minimum multiplier of
+    // an active constraint
     constexpr double kTouches = 1e-9, kActive = 1e-6;
     if (point.norm == 0 || (std::fabs(point.distance) > kTouches * refinement.unit() && multiplier < kActive)) continue;
     Contact contact{.pose = constraints.pose(refinement.solid(last.x).at(spec_.shape, point.unit), point.orientation),
@@ -244,7 +246,7 @@ Dual4 LargestSolidFinder::volume(std::span<const Dual4> parameters, const Larges
       for (int k = 0; k < 4; ++k) result.v[k] += factor * margin.v[k];
       continue;
     }
-    // The face of a search box that is computed for each design.
+    // The contact is on a face of the search box, which depends on the design unless the plan fixes the box.
     const std::optional<Box>& fixed = plan_.box();
     if (fixed) continue;
     const auto axis = static_cast<std::size_t>(std::ranges::find_if(contact.unit, [](double u) { return u != 0; }) -

@@ -35,11 +35,11 @@ struct LargestSolid {
   double residual = 0;
   /// If det(G) = 0 is a constraint: factor by which det(G) is multiplied to obtain its margin; otherwise 0.
   double determinant = 0;
-  std::size_t samples = 0;  ///< number of poses at which the constraints were tested at the end
-  bool is_regular = true;   ///< det(G) does not change its sign in the solid, as far as sampled; true if undefined
+  std::size_t samples = 0;  ///< number of poses at which the constraints were tested in the final test
+  bool is_regular = true;   ///< true: det(G) does not change its sign in the solid, as far as sampled, or is undefined
 };
 
-/// Immutable and thread-safe.
+/// Finds the largest solid in the workspace of a design. Immutable and thread-safe.
 class LargestSolidFinder {
  public:
   /// Throws std::invalid_argument with one sentence if the solid cannot be found in workspaces of this plan.
@@ -49,7 +49,7 @@ class LargestSolidFinder {
   LargestSolidFinder(const Mechanism& mechanism, const WorkspacePlan& plan, SolidSpec spec, bool is_regular,
                      std::vector<ReportMargin> reported = {});
 
-  /// Remembers the last few results.
+  /// Finds the largest solid of a design. The results of the last few designs are cached.
   LargestSolid find(std::span<const double> parameters) const;
   /// The volume with derivatives by the envelope theorem, if one constraint decides each size: constraints that are
   /// limits of quantities without a formula, det(G) and faces of a search box that depends on the design are
@@ -76,14 +76,15 @@ class LargestSolidFinder {
                                              const SolidMargins& margins) const;
   LargestSolid find(std::span<const double> parameters, const VoxelMap& map, bool is_regular) const;
 
-  /// The solids that were found last, with their designs: certificates and pages show designs that were just evaluated.
+  /// Cache of the solids that were found last, with their designs, because certificates and pages show designs that
+  /// were just evaluated.
   struct Memory {
     std::mutex mutex;
     std::deque<std::pair<std::vector<double>, LargestSolid>> solids;
   };
 
   const Mechanism& mechanism_;
-  WorkspacePlan plan_;  ///< the study's plan, as a plan of voxels; with its fixed coordinates
+  WorkspacePlan plan_;  ///< the plan of the study, with its fixed coordinates, converted to a plan of voxels
   SolidSpec spec_;
   bool is_regular_;
   std::vector<ReportMargin> reported_;

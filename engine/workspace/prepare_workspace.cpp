@@ -89,7 +89,7 @@ std::unique_ptr<const VoxelEvaluator> prepare_voxels(const Mechanism& mechanism,
 
 std::unique_ptr<const WorkspaceEvaluator> prepare_one(const Mechanism& mechanism, const WorkspacePlan& plan,
                                                       const FieldRequest& request) {
-  sweep_of(mechanism.info(), plan);  // throws if there is no sweep
+  sweep_of(mechanism.info(), plan);  // throws std::invalid_argument if the mechanism has no such sweep
   if (const ColumnOptions* const columns = plan.columns()) {
     const std::string remedy = "; set workspace.method = \"voxels\"", &name = mechanism.info().name;
     const std::string why = mechanism.why_no_columns();

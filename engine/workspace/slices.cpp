@@ -3,7 +3,7 @@
 namespace pkm {
 namespace {
 
-// half the thickness of the layer of cells around the value of a sliced coordinate [m or rad]
+// Half the thickness of the layer of cells around the value of a sliced coordinate [m or rad].
 constexpr double kHalfThickness = 0x1p-10;
 
 }  // namespace

@@ -17,7 +17,7 @@ std::vector<std::vector<double>> ball_samples(std::size_t dimension, int density
   points.emplace_back(dimension, 0.0);
   for (int shell = 1; shell <= density; ++shell) {
     const double radius = static_cast<double>(shell) / density;
-    // number of intervals of latitude from pole to pole; in the plane a shell is a single circle
+    // Number of intervals of latitude from pole to pole; in the plane, a shell is a single circle.
     const int parallels = dimension == 2 ? 1 : 3 * shell;
     for (int i = dimension == 2 ? 1 : 0; i <= parallels; ++i) {
       const double latitude = dimension == 2 ? 0 : std::numbers::pi * i / parallels - std::numbers::pi / 2;
@@ -87,7 +87,7 @@ SolidSamples SolidShape::samples(int density) const {
       }
     points = std::move(more);
   }
-  // points at a smaller distance are neighbours; diagonal neighbours of a square lattice are included
+  // Points at a smaller distance are neighbours; the distance includes the diagonal neighbours of a square lattice.
   const double reach = 1.75 / density;
   std::vector<std::vector<std::size_t>> neighbours(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)

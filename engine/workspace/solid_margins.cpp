@@ -78,7 +78,8 @@ bool SolidMargins::is_feasible(const std::array<double, 3>& point) {
 }
 
 SolidMargins::Gradient SolidMargins::gradient(std::size_t margin, const Pose<double>& pose) {
-  if (!dual_pose_ || !(*dual_pose_ == pose)) {  // consecutive calls often need other margins of the same pose
+  // The values are cached, because consecutive calls often need other margins of the same pose.
+  if (!dual_pose_ || !(*dual_pose_ == pose)) {
     Pose<Dual4> seeded(pose.size());
     for (std::size_t i = 0; i < pose.size(); ++i) seeded[i] = Dual4(pose[i]);
     for (std::size_t axis = 0; axis < swept_.size(); ++axis)
@@ -158,7 +159,7 @@ CriticalPoint SolidMargins::plane_across_ray(const Solid& solid, std::size_t mar
 CriticalPoint SolidMargins::minimise(const Solid& solid, std::size_t margin, std::size_t orientation,
                                      const UnitPoint& start) {
   // Newton's method on the product of unit balls: the free directions are all directions in a ball's interior, and the
-  // tangents on its boundary. On a unit sphere the Hessian is that of the margin less the outward derivative.
+  // tangents on its boundary. On a unit sphere, the Hessian is the Hessian of the margin minus the outward derivative.
   constexpr int kMaxIterations = 30;
   constexpr double kOnBoundary = 1 - 1e-12, kMaxStep = 0.5, kDifference = 1e-4;
   const std::size_t axes = shape_.axes();
@@ -171,10 +172,10 @@ CriticalPoint SolidMargins::minimise(const Solid& solid, std::size_t margin, std
   Gradient at_unit = scaled_gradient(unit);
   for (int iteration = 0; iteration < kMaxIterations && std::isfinite(norm_of(at_unit.by_axis)); ++iteration) {
     std::vector<UnitPoint> directions;
-    // curvatures[k]: 0 if directions[k] is in the interior of a ball; if it is tangent to a sphere, the outward
-    // derivative of the margin
+    // curvatures[k]: 0 if directions[k] lies in the interior of a ball; the outward derivative of the margin if
+    // directions[k] is tangent to a sphere
     std::vector<double> curvatures;
-    std::array<bool, 3> stays_on_boundary{};  // whether the point stays on the boundary of each ball, by ball
+    std::array<bool, 3> stays_on_boundary{};  // for each ball, whether the point stays on its boundary
     for (std::size_t ball = 0; ball < shape_.balls(); ++ball) {
       double radius = 0, outward = 0;
       for (const std::size_t i : shape_.axes_of(ball)) {
@@ -186,7 +187,7 @@ CriticalPoint SolidMargins::minimise(const Solid& solid, std::size_t margin, std
       for (const std::size_t i : shape_.axes_of(ball)) {
         UnitPoint direction{};
         direction[i] = 1;
-        // Gram-Schmidt: make the direction orthogonal to the radius and to the previous tangents
+        // Gram-Schmidt method: make the direction orthogonal to the radius and to the previous tangents.
         if (stays_on_boundary[ball])
           for (std::size_t k = 0; k <= basis.size(); ++k) {
             UnitPoint other{};
@@ -282,7 +283,7 @@ std::vector<CriticalPoint> SolidMargins::critical_points(const Solid& solid, dou
   std::vector<CriticalPoint> found;
   std::vector<Pose<double>> poses(all.points.size());
   std::vector<double> margins;
-  // for each margin, the difference up to which two values count as equal, because of rounding errors
+  // For each margin, the difference up to which two values count as equal because of rounding errors.
   std::vector<double> equal(count_);
   for (std::size_t orientation = 0; orientation < orientations_.size(); ++orientation) {
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = pose(solid.at(shape_, all.points[i]), orientation);
@@ -305,7 +306,8 @@ std::vector<CriticalPoint> SolidMargins::critical_points(const Solid& solid, dou
       for (std::size_t margin = 0; margin < count_; ++margin) {
         const double value = of_pose[margin];
         if (!std::isfinite(value)) continue;
-        // among neighbouring samples with equal margins, such as along an edge, only the first one counts as a minimum
+        // Among neighbouring samples with equal margins, for example along an edge, only the first one counts as a
+        // minimum.
         const auto is_larger = [&](std::size_t k) {
           const double excess = margin_at(k, margin) - value;
           return !(excess < -equal[margin]) && (!(excess <= equal[margin]) || k > i);

@@ -48,7 +48,7 @@ class GridSearch {
     std::optional<Solid> best;
     double best_volume = 0;
     for (const std::vector<double>& ratio : proportions(spec_)) {
-      // the scale factor of the solid is increased in steps, each of which extends one dimension by two cells
+      // The scale factor of the solid is increased in steps, each of which extends one dimension by two cells.
       double step = std::numeric_limits<double>::infinity();
       for (std::size_t axis = 0; axis < spec_.shape.axes(); ++axis)
         step = std::min(step, 2 * grid_.step[axis] / ratio[spec_.shape.ball_of(axis)]);
@@ -98,7 +98,7 @@ class GridSearch {
     for (std::int64_t i = -half_[0]; i <= half_[0]; ++i)
       for (std::int64_t j = -half_[1]; j <= half_[1]; ++j) {
         const std::array<std::int64_t, 2> offset = {i, j};
-        // for each ball: squared distance of the row from its centre, relative to its squared radius
+        // For each ball: squared distance of the row from the ball's centre, relative to its squared radius.
         std::array<double, 3> squares{};
         for (std::size_t axis = 0; axis < 2; ++axis) {
           const std::size_t ball = spec_.shape.ball_of(axis);
@@ -155,7 +155,8 @@ class GridSearch {
   /// For each axis, the range of indices that the central cell can have: first, end (excluded).
   std::array<std::array<std::int64_t, 2>, 3> range_{};
   std::vector<RowOfCells> rows_;
-  std::array<std::int64_t, 3> half_{};  ///< largest distance of a cell of the solid from the central one, by axis
+  std::array<std::int64_t, 3> half_{};  ///< for each axis, the largest distance of a cell of the solid from the central
+                                        ///< cell
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace pkm {
 
 SolidRefinement::Iterate SolidRefinement::run(const SolidSamples& samples, const Iterate* last) {
   samples_ = &samples;
-  constexpr double kMissed = 1e-6;  // violation in units of the size
+  constexpr double kMissed = 1e-6;  // violation, in units of the size, at which `last` is discarded
   Iterate now = evaluate(last ? last->x : variables_.values(like_), nullptr, 1);
   if (last && now.violation > kMissed) {
     last = nullptr;
@@ -23,11 +23,12 @@ SolidRefinement::Iterate SolidRefinement::run(const SolidSamples& samples, const
     now.multipliers = multipliers;
     const double length = step.lpNorm<Eigen::Infinity>();
     residual_ = length + now.violation;
-    // Differences of the merit function below this one are rounding errors, multiplied by the penalty.
+    // Differences of the merit function that are smaller are rounding errors, multiplied by the penalty.
     constexpr double kRounding = 1e-10;
     const bool is_final = predicted < kRounding;
     if (residual_ < kTolerance || iteration == kMaxIterations || final_steps == kMaxFinalSteps || radius < kTolerance) {
-      // The multipliers without the curvature, which an almost singular update may have made very large.
+      // Compute the multipliers with the initial curvature, because an almost singular update may have made the
+      // curvature very large.
       now.multipliers = solve_step(now, initial_curvature(now), kNearby).multipliers;
       now.curvature = curvature;
       return now;
@@ -101,8 +102,9 @@ SolidRefinement::Iterate SolidRefinement::evaluate(const Eigen::VectorXd& x, con
     }
     add_faces(here, made.points);
   }
-  // Keep points that decided the last step and are no local minima any more: a margin with many equal minima
-  // (a sphere in a cylinder) would otherwise be represented by different ones in each iteration.
+  // Keep the points whose constraints were active in the last step, even if they are not local minima any more.
+  // Otherwise a margin with many equal minima (a sphere in a cylinder) would be represented by different minima in each
+  // iteration.
   for (Eigen::Index k = 0; before && k < before->multipliers.size(); ++k) {
     const CriticalPoint& old = before->points[static_cast<std::size_t>(k)];
     if (old.margin == kBoxFace || old.norm == 0 || before->multipliers[k] < 1e-6 || nearest(made.points, old, 0.05))
@@ -145,7 +147,7 @@ const CriticalPoint* SolidRefinement::nearest(const std::vector<CriticalPoint>& 
 
 SolidRefinement::Step SolidRefinement::solve_program(const Iterate& at, const Eigen::MatrixXd& B,
                                                      const Eigen::VectorXd& c, double radius) const {
-  std::vector<std::size_t> near;  // points
+  std::vector<std::size_t> near;  // indices of the points whose constraints the step can reach
   for (std::size_t k = 0; k < at.points.size(); ++k)
     if (at.points[k].distance <= variables_.gradient(at.points[k]).lpNorm<1>() * radius * variables_.unit())
       near.push_back(k);
@@ -195,7 +197,7 @@ SolidRefinement::Iterate SolidRefinement::corrected(Iterate trial, double radius
 
 void SolidRefinement::update(Eigen::MatrixXd& B, const Iterate& from, const Iterate& to) const {
   const Eigen::VectorXd s = to.x - from.x;
-  if (s.norm() < 1e-9) return;  // differences of gradients would be rounding errors
+  if (s.norm() < 1e-9) return;  // the differences of gradients would be rounding errors
   Eigen::VectorXd y = from.gradient - to.gradient;
   for (Eigen::Index k = 0; k < from.multipliers.size(); ++k) {
     if (from.multipliers[k] < 1e-6) continue;

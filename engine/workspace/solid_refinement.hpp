@@ -76,29 +76,31 @@ class SolidVariables {
 /// -log(volume) + penalty * (largest violation); every step is followed by a second-order correction.
 class SolidRefinement {
  public:
-  using Faces = std::array<std::array<double, 2>, 3>;       ///< of the search box, by axis: lower and upper
-  static constexpr std::size_t kBoxFace = std::size_t(-1);  ///< CriticalPoint::margin of these faces
+  using Faces = std::array<std::array<double, 2>, 3>;       ///< lower and upper bound of the search box, by axis
+  static constexpr std::size_t kBoxFace = std::size_t(-1);  ///< value of CriticalPoint::margin for points that belong
+                                                            ///< to a face of the search box
 
   SolidRefinement(const SolidSpec& spec, const Faces& faces, SolidMargins& margins, const Solid& start)
       : spec_(spec), faces_(faces), margins_(margins), variables_(spec, start), like_(start) {}
 
-  /// A point of the iteration.
+  /// An iterate of sequential quadratic programming: a solid, its critical points and the local model.
   struct Iterate {
     Eigen::VectorXd x;
     std::vector<CriticalPoint> points;
-    Eigen::VectorXd multipliers = {};  ///< by critical point
+    Eigen::VectorXd multipliers = {};  ///< Lagrange multipliers, one for each of `points`
     double log_volume = 0;
     Eigen::VectorXd gradient, hessian;
-    double violation = 0;            ///< largest, in units of SolidVariables::unit()
+    double violation = 0;            ///< largest violation of a constraint, in units of SolidVariables::unit()
     Eigen::MatrixXd curvature = {};  ///< approximate Hessian of the Lagrangian at the end of a run
   };
 
   /// Iterates until convergence.
-  /// @param last  end of an earlier run, with fewer samples, which is continued unless a constraint is violated there:
-  ///              then they missed a minimum of its margin
+  /// @param last  final iterate of an earlier run with fewer samples. The run continues from it, unless a constraint is
+  ///   violated there, because the earlier samples missed a minimum of its margin
   Iterate run(const SolidSamples& samples, const Iterate* last = nullptr);
 
-  /// The same with the violations removed by shrinking, tested with other samples.
+  /// The solid of an iterate, shrunk until no constraint is violated.
+  /// @param dense  other samples of the solid, from which the critical points are found
   Solid finish(Iterate& last, const SolidSamples& dense);
 
   double residual() const { return residual_; }
@@ -118,21 +120,23 @@ class SolidRefinement {
   void add_faces(const Solid& solid, std::vector<CriticalPoint>& points) const;
 
   /// @param before  the iterate from which `x` was reached; null: none
-  /// @param length  of the step from there; after small steps only the critical points of `before` are followed
+  /// @param length  length of the step from `before` to `x`; after small steps only the critical points of `before` are
+  ///   followed
   Iterate evaluate(const Eigen::VectorXd& x, const Iterate* before, double length);
 
   /// Adds the critical points of a rejected trial to the linear model, as a bundle method does: where a margin has many
   /// minima, those on the other side of the solid stop the next step. @return false if there is no new point
   bool add_points(const Iterate& trial, Iterate& now);
 
-  /// The point of the same constraint nearest to another; null if none is within `reach` in the unit solid.
+  /// Among the critical points of the same constraint, the one that is nearest to a given critical point; null if none
+  /// is within the distance `reach` in the unit solid.
   static const CriticalPoint* nearest(const std::vector<CriticalPoint>& points, const CriticalPoint& to, double reach);
 
   static double merit(const Iterate& at) { return -at.log_volume + kPenalty * at.violation; }
 
   struct Step {
     Eigen::VectorXd step, multipliers;
-    double predicted = 0;  ///< decrease of the merit function
+    double predicted = 0;  ///< decrease of the merit function that the quadratic model predicts
   };
 
   /// Minimises c'd + d'Bd/2 + penalty * t subject to the linearised constraints, which t >= 0 relaxes, and |d| <=
@@ -149,7 +153,7 @@ class SolidRefinement {
   const SolidSpec& spec_;
   const Faces& faces_;
   SolidMargins& margins_;
-  const SolidSamples* samples_ = nullptr;  ///< of the current run
+  const SolidSamples* samples_ = nullptr;  ///< samples of the solid in the current run
   SolidVariables variables_;
   Solid like_;
   double residual_ = 0;

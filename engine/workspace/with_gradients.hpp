@@ -6,8 +6,8 @@
 
 namespace pkm {
 
-/// CRTP base: Self defines `template <class S> void run(std::span<const S> parameters, Scratch&, WorkspaceResult<S>&)
-/// const`.
+/// CRTP base class of workspace evaluators with derivatives: Self defines `template <class S> void run(std::span<const
+/// S> parameters, Scratch&, WorkspaceResult<S>&) const`.
 template <class Self>
 class WithGradients : public WorkspaceEvaluator, public GradientEvaluator {
  public:

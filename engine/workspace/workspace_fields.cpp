@@ -239,7 +239,8 @@ PoseMargin::PoseMargin(const Mechanism& mechanism, std::span<const double> param
 double PoseMargin::operator()(const Pose<double>& pose, Scratch& scratch) const {
   double min_margin = std::numeric_limits<double>::infinity();
   const PoseMargins* const capability = mechanism_.pose_margins();
-  // the mechanism has no PoseMargins: use those of the pose report, which has some even if the pose does not assemble
+  // The mechanism does not provide PoseMargins: use the margins of the pose report, which has some even if the
+  // mechanism cannot be assembled.
   if (!capability) {
     const auto report = mechanism_.inspect(parameters_, pose, mechanism_.info().modes.front(), limits_);
     for (const auto& named : report.margins) min_margin = std::fmin(min_margin, named.second);

@@ -14,7 +14,7 @@ namespace pkm::crr_cru {
 struct AnalysisSettings {
   Platform platform;
   MassModel mass_model;
-  WorkingMode mode;  ///< working mode for the inertia; feasibility does not depend on it
+  WorkingMode mode;  ///< working mode with which the inertia is computed; feasibility does not depend on it
   FixedCoordinate fixed;
   Limits limits;
   FieldRequest request;

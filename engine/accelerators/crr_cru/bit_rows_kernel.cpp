@@ -5,7 +5,7 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// The cells with indices [first, end) of each line, which satisfy one of the two inequalities of the annulus.
+/// For each line, the cells [first, end) that satisfy one of the two inequalities of the annulus.
 template <class L>
 struct CellRange {
   L first, end;
@@ -49,7 +49,7 @@ template <int W>
   for (int i = 0; i < kLanes / W; ++i) {
     typedef typename Words<W>::Part Part;
     const Part n = (Part)skipped.part[i] & 127, half = n >> 1;
-    // Shifted in two steps, because a shift by 64 is undefined in C++.
+    // The mask is shifted in two steps, because a shift by 64 is undefined in C++.
     bits.part[i] = (Part{} + ~0ULL) << half << (n - half);
   }
   return bits;

@@ -104,7 +104,7 @@ Slice<S> decomposed_slice(const SlicedDesign<S>& s, const S& outer, ColumnScratc
   return slice;
 }
 
-/// Area of the slice at a value of the outer coordinate, in closed form [m^2].
+/// Area of the slice at a value of the outer coordinate, computed in closed form [m^2].
 template <class S>
 S area_at(const SlicedDesign<S>& s, const S& outer, ColumnScratch<S>& scratch) {
   const Slice<S> slice = decomposed_slice(s, outer, scratch);

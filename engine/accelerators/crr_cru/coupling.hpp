@@ -20,8 +20,8 @@ YawInertia<S> yaw_inertia(const Geometry<S>& g, const Masses<S>& b, const S& phi
   std::array<Vector<S, 3>, 4> by_phi;
   for (std::size_t i = 0; i < 4; ++i) by_phi[i] = yaw_velocity(arm[i]);
   const S j1 = by_phi[0][0], j2 = by_phi[1][1], j4 = by_phi[3][1];
-  const Matrix<double, 3, 3> J = {
-      {1, 0, value_of(j1), 0, 1, value_of(j2), 0, 1, value_of(j4)}};  // columns x, y, phi; z is separate
+  // The columns of J belong to x, y and phi; z depends on slide 3 alone.
+  const Matrix<double, 3, 3> J = {{1, 0, value_of(j1), 0, 1, value_of(j2), 0, 1, value_of(j4)}};
   const S w = is_singular(J) ? S(std::numeric_limits<double>::quiet_NaN()) : S(S(1.0) / (j4 - j2));
   // Velocities of x, y, z and phi if only slide 4 moves, with unit velocity.
   const Vector<S, 4> X = {{j1 * w * -1.0, j2 * w * -1.0, S(0.0), w}};

@@ -15,7 +15,7 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 inline constexpr PoseBox kEverywhere = {
     {{-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}, {-kUnbounded, kUnbounded}}};
 
-/// Quantities of a design and its limits that do not depend on phi.
+/// A design and its limits, as quantities that do not depend on the yaw angle phi.
 template <class S>
 struct Design {
   Geometry<S> g;
@@ -78,7 +78,8 @@ void intersect(Interval<S>& interval, const S& lower, const S& upper, EndpointLa
   }
 }
 
-/// The positions that are feasible at one phi: those that are in all ranges and in all annuli.
+/// The positions that are feasible at one phi: the positions in the ranges of all slides and in the annuli of all
+/// limbs.
 template <class S>
 struct PositionSet {
   std::array<Interval<S>, 3> range;  ///< ranges of x, y, z

@@ -76,7 +76,7 @@ void decompose(const Slice<double>& s, Decomposition& decomposition) {
     const Interval<double>& part = s.u.interval[i];
     CriticalPoint from = CriticalPoint::end_of_u(2 * i);
     double low = part.lower;
-    bool is_adjacent = false;  // true if the previous column ends at `from`
+    bool is_adjacent = false;  // true: the previous column ends at `from`
     const auto add_until = [&](double high, const CriticalPoint& to) {
       if (high > low) {
         const IntervalSet<double> found = column_at(s, 0.5 * (low + high));

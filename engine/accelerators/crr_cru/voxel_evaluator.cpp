@@ -51,7 +51,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
                 WorkspaceResult<double>& workspace) const override {
     GridEvaluator::evaluate(parameters, scratch, workspace);
     if (!settings_.with_conditioning || !workspace.weight.empty()) return;
-    // Phi is fixed, so one sample represents all cells.
+    // If phi is fixed, one sample represents all cells.
     const Geometry<double> g = geometry(settings_.platform, parameters);
     settings_.add_conditioning(g, fixed_value(g, settings_.fixed), workspace.volume, workspace);
   }
@@ -75,7 +75,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
   }
 
   /// Finds the feasible cells at one value of phi, and writes them to `to`.
-  /// @return false if there are none
+  /// @return false if no cell is feasible
   bool fill(const GriddedSlices& s, double phi, CellsAtPhi& to) const {
     if (!to.cells.fill(s.d, settings_.fixed, s.grid, phi)) return false;
     if (!settings_.request.needs_inertia()) return true;

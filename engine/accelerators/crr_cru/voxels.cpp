@@ -24,7 +24,7 @@ Box default_box(const Design<double>& d, const FixedCoordinate& fixed) {
   const auto arm = arms(g, s, c);
   std::array<std::array<double, 2>, 4> range;
   for (std::size_t k = 0; k < 3; ++k) {
-    // Phi may have any value, which shifts the joint by -r to r.
+    // If phi is not fixed, the rotation displaces the platform joint by -r to r along its rail.
     const bool rotates = fixed.coordinate != 3 && arm[k].rotates && k < 2;
     const double shift = rotates ? 0 : arm[k].to_joint[k], reach = rotates ? g.r : 0;
     range[k] = {g.rho_min - shift - reach, g.rho_max - shift + reach};
@@ -40,7 +40,7 @@ Box default_box(const Design<double>& d, const FixedCoordinate& fixed) {
 void SliceCells::fill_axis(Axis& axis, const VoxelGrid& grid, std::size_t which) {
   const auto cells = static_cast<std::size_t>(grid.cells[which]);
   if (axis.cells == cells && axis.lower == grid.lower[which] && axis.step == grid.step[which])
-    return;  // this axis is independent of phi and was filled for an earlier phi
+    return;  // the table of this axis is independent of phi and was filled for an earlier phi
   axis.cells = cells;
   axis.lower = grid.lower[which];
   axis.step = grid.step[which];
@@ -95,7 +95,7 @@ bool SliceCells::fill_table(const Design<double>& d, const PositionSet<double>& 
     for (std::size_t row = rows_begin; row < rows_end; ++row) table.bits[row * words + w] = word;
   }
   for (std::size_t i = 0; i < 4; ++i) {
-    if (kLimbs[i].e == a || kLimbs[i].e == b) continue;  // the annulus of this limb is in another plane
+    if (kLimbs[i].e == a || kLimbs[i].e == b) continue;  // the annulus of this limb lies in another plane
     const AnnulusLines lines{.lower = along.lower,
                              .step = along.step,
                              .cells = static_cast<double>(along.cells),

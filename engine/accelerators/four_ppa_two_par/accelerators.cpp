@@ -22,7 +22,7 @@ bool integrates_y(const WorkspacePlan& plan) { return how_fixed(plan, kY).kind =
 
 template <class S>
 SampleContents<S> contents(std::span<const S> parameters, const FieldRequest& request) {
-  const auto& length = request.characteristic_length;  // default: a/2
+  const auto& length = request.characteristic_length;  // the default characteristic length is a/2
   SampleContents<S> c{.conditioning = request.has(kConditioning),
                       .poses = request.poses,
                       .inertia = request.needs_inertia(),
@@ -141,7 +141,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
     Geometry<double> g;
     Limits<double> l;
     std::optional<ClearanceTest> test;
-    const std::vector<FixedCells>& all_y;  ///< the cells along y, if y is integrated over; otherwise empty
+    const std::vector<FixedCells>& all_y;  ///< the cells along y, if the volume is integrated over y; otherwise empty
     double y;                              ///< value of y, if y is fixed
     SampleContents<double> wanted;
 

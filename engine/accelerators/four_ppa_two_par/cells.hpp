@@ -9,8 +9,8 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// The columns of the first x of a grid at kLanes consecutive thetas. A plain struct, so that kernels share no inline
-/// code with files that are compiled for another instruction set.
+/// The columns along z at the first x values of a grid, for kLanes consecutive values of theta. A plain struct, so that
+/// kernels share no inline code with files that are compiled for another instruction set.
 struct ColumnsAtThetas {
   double a, b, l_u, l_d, d, L0;        ///< lengths of the design, see Geometry
   double sin_par_min, cos_theta_min;   ///< thresholds, see Limits

@@ -47,7 +47,7 @@ struct ColumnLimits {
     const double high = reduce_max(select(has_poses, lesser(L(x_max), w - x_min) - x_0, L(-kInfinity)));
     const auto columns = static_cast<double>(at.columns);
     const auto index = [&](double i) { return static_cast<std::int64_t>(i > 0 ? i < columns ? i : columns : 0); };
-    x_begin = index(low / x_step - 1);  // one more column on each side, because of rounding
+    x_begin = index(low / x_step - 1);  // use one more column on each side, because of rounding errors
     x_end = index(high / x_step + 2);
   }
 
@@ -59,8 +59,8 @@ struct ColumnLimits {
   [[gnu::always_inline]] Cells operator[](std::int64_t i) const {
     const L x_1 = x_0 + static_cast<double>(i) * x_step, x_2 = w - x_1;
     const L sigma_1 = sqrt_or_zero(l_d2 - x_1 * x_1), sigma_2 = sqrt_or_zero(l_d2 - x_2 * x_2);
-    // The following heights are counted in cells: from the first centre at or above the lower end to the last centre at
-    // or below the upper end.
+    // The following heights are positions in units of cells. The feasible cells extend from the first centre at or
+    // above the lower end to the last centre at or below the upper end.
     const L low = offset - (bottom + lesser(sigma_1, sigma_2)) * per_cell;
     const L high = offset - greater(top_1 + sigma_1, top_2 + sigma_2) * per_cell;
     const L first = ceil(lesser(greater(low, L(0.0)), L(cells)));

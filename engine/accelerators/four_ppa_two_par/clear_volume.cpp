@@ -88,7 +88,7 @@ Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest
   constexpr double kInnerTolerance = 0.02;
   const Quadrature outer{.regularity = Regularity::kinks}, inner{.regularity = Regularity::kinks, .depth = 12};
   static const GaussRule coarse = gauss_legendre(5);
-  // A first estimate of the volume. The call also finds the intervals of integration.
+  // This call computes a first estimate of the volume, and finds the intervals of integration.
   const Integral<double> guess = clear_volume_by_rule(d, test, over_y, coarse, coarse, scratch);
   double range = 0;
   for (const Subinterval<double>& interval : scratch.intervals) range += interval.upper - interval.lower;

@@ -69,7 +69,8 @@ ClearanceTest::ClearanceTest(const Geometry<double>& g, double min_clearance) : 
       h_min_ = infinity;
     } else if (platform_and_lower && below <= g.l_d) {
       const double radii = min_clearance + g.R_p + g.R_d;
-      if (radii > g.d) h_min_ = infinity;  // no pose satisfies the limit: the point D_j is only d above the platform
+      // If radii > d, no pose satisfies the limit, because the point D_j is only d above the platform.
+      if (radii > g.d) h_min_ = infinity;
       sin_beta_min_ = radii / below;
     } else {
       (moves(pair.first) || moves(pair.second) ? moving_pairs_ : suspended_pairs_).push_back(pair);

@@ -21,7 +21,8 @@ struct ColumnScratch {
   std::vector<Subinterval<S>> deltas, heights;  ///< intervals of delta within a slice, and of z within a column
   ClearanceScratch clearance;
   ColumnConditioning<S> poses;
-  std::array<std::vector<S>, 2> inertia;  ///< values of fields at a pose and at its mirror image in x = b/2
+  std::array<std::vector<S>, 2> inertia;  ///< values of the inertia's fields at a pose and at its mirror image in x =
+                                          ///< b/2
 };
 
 /// Estimate of the rounding error of the area of a slice [m^2], which is a difference of terms of the size l_d (l_d +
@@ -92,7 +93,8 @@ S area_over_y(const SlicedDesign<S>& d, Slice<S> t, const GaussRule& rule) {
     if (!(value_of(length) > 0)) continue;
     set_depths(d, S(lower + length * 0.5), t);
     const double full = value_of(d.z_low - d.z_high);
-    if (value_of(t.depth[0]) == full && value_of(t.depth[1]) == full) {  // the stroke does not limit z here
+    // Where both depths are `full`, the strokes do not limit z in this interval of y.
+    if (value_of(t.depth[0]) == full && value_of(t.depth[1]) == full) {
       sum += area(d, t) * length;
       continue;
     }

@@ -15,7 +15,7 @@ namespace pkm::four_ppa_two_par {
 template <class S>
 Matrix<S, 4, 4> joint_inertia(const Geometry<S>& g, const Masses<S>& b, const S& sin_theta, const S& cos_theta,
                               const std::array<S, 2>& x, const std::array<S, 2>& sigma, const std::array<S, 2>& z_c) {
-  using Row = Vector<S, 4>;  // a velocity as a linear form of the four slider velocities: its coefficients
+  using Row = Vector<S, 4>;  // a velocity as a linear form of the four slider velocities, given by its coefficients
   std::array<Row, 2> y, h, z_cj, x_j;
   std::array<S, 2> t, h2;
   for (std::size_t j = 0; j < 2; ++j) {

@@ -11,7 +11,7 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<do
   const double sine = (q[2] + q[3] - q[0] - q[1]) / (2 * g.a);
   constexpr double kRoundoff = 1e-12;
   if (!(std::fabs(sine) <= 1 + kRoundoff) || h[0] < 0 || h[1] < 0)
-    return modes;  // all modes in which the two sliders of a rail keep their order
+    return modes;  // the list contains all modes in which the two sliders of a rail keep their order
   double z_c[2];
   for (int j = 0; j < 2; ++j) {
     const double under = (g.l_u - h[j]) * (g.l_u + h[j]);
@@ -21,8 +21,8 @@ std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<do
   const double theta = asin(std::clamp(sine, -1.0, 1.0));
 
   const auto intersect = [&](double angle, double z1, double z2, const char* above) {
-    // (x, z) of the platform is an intersection of two circles of radius l_d, with centres (x1, z1 - d) and (x2, z2 -
-    // d)
+    // The point (x, z) of the platform is an intersection of two circles of radius l_d with the centres (x1, z1 - d)
+    // and (x2, z2 - d).
     const double c = sincos(angle).cos;
     const double x1 = g.a * c / 2, x2 = g.b - g.a * c / 2, w = x2 - x1, rise = z2 - z1;
     const double distance2 = w * w + rise * rise;

@@ -74,8 +74,9 @@ Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
   const auto of_sine = [](const S& sine) {
     return SinCosOf<S>{sine, sqrt_or_zero(S((S(1.0) - sine) * (S(1.0) + sine)))};
   };
-  const auto alpha = spec.derived[kAlphaMin] ? of_sine(S(2.0 * g.R_u / g.d_u)) : given(kAlphaMin);   // eq 17
-  const auto beta_low = spec.derived[kBetaMin] ? of_sine(S(2.0 * g.R_d / g.d_d)) : given(kBetaMin);  // eq 17
+  // Derived minima of alpha and beta: equation (17) of the paper.
+  const auto alpha = spec.derived[kAlphaMin] ? of_sine(S(2.0 * g.R_u / g.d_u)) : given(kAlphaMin);
+  const auto beta_low = spec.derived[kBetaMin] ? of_sine(S(2.0 * g.R_d / g.d_d)) : given(kBetaMin);
   const auto beta_high = spec.given[kBetaMax] ? given(kBetaMax) : SinCosOf<S>{S(1.0), S(0.0)};
   const double sin_phi = spec.given[kSinParMin].value_or(0), cos_phi = std::sqrt((1 - sin_phi) * (1 + sin_phi));
   const double cos_half = std::sqrt(0.5 * (1 + cos_phi));
@@ -85,7 +86,7 @@ Limits<S> limits(const Geometry<S>& g, const LimitSpec& spec) {
           .cos_beta_min = beta_low.cos,
           .sin_beta_max = beta_high.sin,
           .cos_beta_max = beta_high.cos,
-          .h_min = spec.derived[kHMin] ? S(g.d_0 + g.d_u * 0.5) : S(spec.given[kHMin].value_or(0)),  // eq 19
+          .h_min = spec.derived[kHMin] ? S(g.d_0 + g.d_u * 0.5) : S(spec.given[kHMin].value_or(0)),  // equation (19)
           .sin_par_min = S(sin_phi),
           .sin_half = S(0.5 * sin_phi / cos_half),
           .cos_half = S(cos_half),

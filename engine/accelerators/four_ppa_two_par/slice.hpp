@@ -141,8 +141,9 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& sin_theta, const S& cos_theta)
   return t;
 }
 
-/// The half of a slice in which a given limb is the leaning one, i.e. has the greater inclination. At delta = |sigma_1
-/// - sigma_2| in [low, end], the feasible interval of z has the length min(flat, slope - delta) [m].
+/// The half of a slice in which a given limb is the leaning one, i.e. has the greater inclination. At a value of delta
+/// = |sigma_1 - sigma_2| in the range [low, end], the feasible interval of z has the length min(flat, slope - delta)
+/// [m].
 template <class S>
 struct HalfSlice {
   S flat, slope;

@@ -93,8 +93,8 @@ template <class S>
 void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<CriticalValue<S>>& values) {
   const Geometry<S>& g = d.g;
   const Limits<S>& l = d.l;
-  // Adds the theta of a value of w or of `shift`. The flags tell whether the area has a square-root singularity below
-  // and above it.
+  // Adds the theta of a value of w or of `shift`. root_below and root_above: true if the area has a square-root
+  // singularity below or above this theta.
   const auto at_w = [&](const S& w, bool root_below, bool root_above) {
     const S c = (g.b - w) / g.a;
     if (value_of(c) > 0 && value_of(c) < 1) values.push_back({acos(c), root_below, root_above});
@@ -104,24 +104,26 @@ void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<Criti
     if (value_of(s) > 0 && value_of(s) < 1) values.push_back({asin(s), root_below, root_above});
   };
   const auto root = [](const S& x) { return sqrt_or_zero(x); };
-  // the bounds of w
+  // theta at which w is at a bound
   at_w(d.x_min * 2.0, false, false);
   at_w(d.x_max * 2.0, true, false);
   at_w(d.chord_max, true, false);
-  // the active limit changes from beta_max to beta_min: a square root if sigma of the leaning limb vanishes there
+  // theta at which the active limit changes from beta_max to beta_min; the area has a square-root singularity if sigma
+  // of the leaning limb vanishes there
   at_w(d.x_max + d.x_min, value_of(l.cos_beta_max) < 0.1, false);
   const bool parallel = value_of(l.sin_par_min) > 0;
   const S sin_phi = l.sin_half * l.cos_half * 2.0, cos_phi = l.cos_half * l.cos_half - l.sin_half * l.sin_half;
   if (parallel) {
-    // beta_1 + beta_2 = pi - phi with one limb at its limit
+    // theta at which beta_1 + beta_2 = pi - phi with one limb at its limit
     at_w(g.l_d * (l.sin_beta_max + sin_phi * l.cos_beta_max + cos_phi * l.sin_beta_max), false, false);
     at_w(g.l_d * (l.sin_beta_min + sin_phi * l.cos_beta_min + cos_phi * l.sin_beta_min), false, false);
-    // beta_1 + beta_2 = phi begins to exclude poses at x = b/2, or coincides with a limit
+    // theta at which the limit beta_1 + beta_2 >= phi begins to exclude poses at x = b/2, or coincides with another
+    // limit
     at_w(d.chord_min, true, false);
     at_w(g.l_d * (l.sin_beta_min + sin_phi * l.cos_beta_min - cos_phi * l.sin_beta_min), false, false);
     at_w(g.l_d * (l.sin_beta_max + sin_phi * l.cos_beta_max - cos_phi * l.sin_beta_max), false, false);
   }
-  // the depth for unlimited stroke equals a bound of delta
+  // theta at which the depth for unlimited stroke equals a bound of delta
   const S depth = d.z_low - d.z_high;
   const S lean = g.l_d * l.cos_beta_max + depth, other = g.l_d * l.cos_beta_min - depth;
   if (value_of(lean) < value_of(g.l_d)) {
@@ -134,12 +136,13 @@ void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<Criti
   if (value_of(upper) > 0) at_w(root(upper), false, false);
   const S lower = (d.chord_min - depth) * (d.chord_min + depth);
   if (parallel && value_of(lower) > 0) at_w(root(lower), false, false);
-  // The stroke begins to limit z (with a square-root singularity on that side), or leaves a limb no feasible z.
+  // theta at which the stroke begins to limit z (with a square-root singularity on that side), or leaves a limb no
+  // feasible z
   at_shift(d.y - d.stroke_free, false, true);
   at_shift(d.stroke_free - d.y, true, false);
   at_shift(g.L0 - d.stroke_free - d.y, false, true);
   at_shift(d.y - l.h_min, false, false);
-  at_shift(g.L0 * 0.5 - d.y, false, false);  // here the other end of the rail becomes the nearer one
+  at_shift(g.L0 * 0.5 - d.y, false, false);  // theta at which the other end of the rail becomes the nearer one
 }
 
 /// Calls split(critical value, signature below it) at the roots of the switching functions between two critical values

@@ -14,8 +14,8 @@ template <InstructionSet set>
 CellTally fill(const ColumnsAtBeta& at, CellRuns& runs) {
   using L = LanesOf<set>;
   const double per_cell = 1 / at.x_step, offset = -at.x_lower * per_cell - 0.5;
-  // The following positions are counted in cells: the first centre not below x, and the centre after the last one not
-  // above x.
+  // The following functions return positions in units of cells: the first centre that is not below x, and the centre
+  // after the last one that is not above x.
   const auto ceiling = [&](const L& x) { return ceil(lesser(greater(x * per_cell + offset, L(0.0)), L(at.cells))); };
   const auto floor_and_one = [&](const L& x) {
     return floor(lesser(greater(x * per_cell + offset, L(-1.0)), L(at.cells - 1))) + 1.0;

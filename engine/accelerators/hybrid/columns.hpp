@@ -14,10 +14,10 @@ namespace pkm::hybrid {
 template <class S>
 struct ColumnScratch {
   CriticalValueScratch beta;
-  std::vector<Subinterval<S>> intervals;  ///< subintervals of beta, one for each element of beta.intervals
+  std::vector<Subinterval<S>> intervals;  ///< subintervals of beta, one for each element of `beta.intervals`
   std::vector<QuadratureCell<S>> integrals;
   StripScratch strips;
-  Decomposition decomposition;  ///< decomposition of a slice at a beta outside of all intervals
+  Decomposition decomposition;  ///< decomposition of a slice whose beta is in none of the intervals
   PoseList poses;
 };
 

@@ -22,7 +22,8 @@ struct PoseList {
   std::size_t size() const { return z.size(); }
 };
 
-/// The values of a design on which the conditioning depends. A plain struct, for the reason given in cells.hpp.
+/// The values of a design on which the conditioning depends. A plain struct, so that kernels share no inline code with
+/// files that are compiled for another instruction set.
 template <class S>
 struct ConditioningDesign {
   S L1, L2, L3, d, e;           ///< lengths of the design, see Geometry [m]

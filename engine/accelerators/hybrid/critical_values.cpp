@@ -53,14 +53,14 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
     for (std::size_t i = 0; i < edge.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         if ((in_s[i] >= in_s[j]) == (in_t[i] >= in_t[j])) continue;
-        // the edges -x and x of one chain curve intersect only where the root vanishes
+        // The edges -x and x of one curve of the chain intersect only where the root vanishes.
         const bool opposite = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
         if (!opposite)
           return Degeneracy{.kind = Degeneracy::Kind::edges, .first = at, .left = edge[j], .right = edge[i]};
       }
   }
-  // Otherwise, a strip vanishes. Take the shortest strip that exists on one side only. Prefer strips whose pair of
-  // edges bounds no strip on the other side: all others may exist on both sides with different bounds.
+  // Otherwise, a strip vanishes. Take the shortest strip that exists on one side only. Prefer a strip whose pair of
+  // edges bounds no strip on the other side, because any other strip may exist on both sides with different bounds.
   std::optional<Degeneracy> found;
   double shortest = std::numeric_limits<double>::infinity();
   const auto find_vanishing = [&](const Decomposition& here, const Decomposition& there, const auto& same) {

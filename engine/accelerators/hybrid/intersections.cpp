@@ -41,12 +41,12 @@ double circle_intersection(const Slice<double>& s, const Edge& first, const Edge
                            double high) {
   const auto circle = [](const Edge& e) { return e.curve != kCurveQ && e.curve != kCurveP; };
   if (!circle(first) || !circle(second)) return kNoIntersection;
-  // centres and radii of the two circles
+  // Compute the centres and radii of the two circles.
   const Curve<double>&c = s.curve[first.curve], &d = s.curve[second.curve];
   const double z1 = 0.5 * (c.a - c.b), r1 = 0.5 * (c.a + c.b), r2 = 0.5 * (d.a + d.b);
   const double dx = s.constant(second) - s.constant(first), dz = 0.5 * (d.a - d.b) - z1,
                inverse2 = 1 / (dx * dx + dz * dz);
-  // components along and across the line of centres, relative to the distance of the centres
+  // Components of the intersection along and across the line of centres, relative to the distance of the centres.
   const double along = 0.5 * (1 + (r1 - r2) * (r1 + r2) * inverse2), across2 = r1 * r1 * inverse2 - along * along;
   constexpr double kTangent = 1e-4;
   if (!(across2 >= kTangent * along * along)) return kNoIntersection;
@@ -79,7 +79,7 @@ double intersection_near(const Slice<double>& s, const Edge& first, const Edge& 
   if (const double at = circle_intersection(s, first, second, z, 0, kUnbounded); at == at) return at;
   constexpr int kMaxSteps = 8;
   Gap here{};
-  double first_derivative = 0;  // derivative of the gap with respect to z, at z
+  double first_derivative = 0;  // derivative of the gap with respect to z, at the current z
   const auto step = [&](double at) {
     here = gap(s, first, second, at);
     if (first_derivative == 0) first_derivative = here.derivative;

@@ -19,7 +19,7 @@ struct Product {
 template <class S>
 struct Limbs {
   S n1, n2, n3;  ///< component of the link of each limb along its rail [m]
-  S k, N1, N2;   ///< terms of the loop-closure equations (README.md) [m], [m], [m^2]
+  S k, N1, N2;   ///< terms of the loop-closure equations (README.md); k and N1 in m, N2 in m^2
 };
 
 /// Solves the loop-closure equations of the limbs at a pose.

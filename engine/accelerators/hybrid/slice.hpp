@@ -179,7 +179,7 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& beta) {
   s.hole_end = value_of(hole2) > 0 ? S(sqrt(hole2) - Q0) : none;
   s.upper[kEndQ] = all;
 
-  // the bounds of x
+  // Curves that bound x.
   const auto circle = [&](const S& radius, const S& foot) {  // a circle with its centre at z = foot
     return Curve<S>{{radius + foot, S(-1.0), radius - foot, one}};
   };

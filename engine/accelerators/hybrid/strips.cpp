@@ -37,7 +37,8 @@ double possible_intersection(const Slice<double>& s, const Edge& above, const Ed
                              const Node& q) {
   if (are_bounds_of_chain(above, below)) return kNoIntersection;
   const double high = s.sign(above), low = s.sign(below);
-  const bool above_is_convex = high<0, below_is_concave = low> 0;  // otherwise concave and convex, respectively
+  // If false: `above` is concave, and `below` is convex, respectively.
+  const bool above_is_convex = high<0, below_is_concave = low> 0;
   const double width = q.z - p.z, gap_p = x_at(s, above, p) - x_at(s, below, p),
                gap_q = x_at(s, above, q) - x_at(s, below, q);
   if (!above_is_convex && !below_is_concave) return kNoIntersection;
@@ -54,8 +55,7 @@ double possible_intersection(const Slice<double>& s, const Edge& above, const Ed
   add(above, high, above_is_convex, 1);
   add(below, low, below_is_concave, -1);
   if (derivative_p >= 0 || derivative_q <= 0) return kNoIntersection;  // the minimum is at p or q
-  // intersection of the lines gap_p + derivative_p (z - p) and gap_q - derivative_q (q - z); a derivative can be
-  // infinite
+  // Intersect the lines gap_p + derivative_p (z - p) and gap_q - derivative_q (q - z); a derivative can be infinite.
   double along = (gap_q - gap_p - derivative_q * width) / (derivative_p - derivative_q);
   double smallest = gap_p + derivative_p * along;
   if (std::isinf(derivative_p)) {
@@ -157,7 +157,8 @@ void add_positive(const Slice<double>& s, const Edge& left, const Edge& right, c
                    : p.positive ? possible_intersection(s, right, left, p.node, q.node)
                                 : possible_intersection(s, left, right, p.node, q.node);
   if (z > low && z < high) {
-    Candidate middle{intersection_at(z, left, left), node_at(s, z), false};  // not a bound if a strip continues there
+    // If a strip continues across the height z, `middle` is not a bound of this strip.
+    Candidate middle{intersection_at(z, left, left), node_at(s, z), false};
     middle.positive = x_at(s, right, middle.node) >= x_at(s, left, middle.node);
     add_positive(s, left, right, p, middle, depth - 1, strips);
     add_positive(s, left, right, middle, q, depth - 1, strips);

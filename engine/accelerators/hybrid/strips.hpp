@@ -41,7 +41,8 @@ inline bool same_type(const Strip& p, const Strip& q) {
 }
 
 struct Decomposition {
-  /// Non-empty strips in ascending z; beside a hole, two strips have the same interval of z.
+  /// Non-empty strips in ascending z. Where the feasible x has a hole, two strips, one on each side of the hole, have
+  /// the same interval of z.
   std::vector<Strip> strips;
   std::size_t lower = 0, upper = 0;  ///< indices of those lower and upper bounds of z that are active
   enum class Hole {

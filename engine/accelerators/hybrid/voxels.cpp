@@ -10,7 +10,7 @@ Box default_box(const SlicedDesign<double>& d) {
   const Limits<double>& l = d.l;
   const Box any = {{{-g.L1, g.L1}, {0, g.L1}, {l.beta_min, l.beta_max}}};
   if (d.empty) return any;
-  // range of n with the given sign if |n| is in [low, high]
+  // Returns the range of n if n has the given sign and |n| is in [low, high].
   const auto signed_range = [](double low, double high, int sign) {
     return sign > 0 ? std::array{low, high} : std::array{-high, -low};
   };

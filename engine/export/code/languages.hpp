@@ -8,7 +8,7 @@
 
 namespace pkm::code {
 
-/// Name and content of a generated file. The name is a path relative to the output folder.
+/// A generated file with its name and content. The name is a path relative to the output folder.
 struct File {
   std::string name, text;
 };

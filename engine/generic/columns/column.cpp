@@ -63,7 +63,7 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
   const auto [from, to] = plan_.range.back();
   const double low = registers[from], high = registers[to], beyond = 1e-2 * (high - low);
   if (!(high > low)) return false;
-  // enlarge the range slightly, because the bounds of the box are constraints, too, with roots at low and high
+  // Enlarge the range slightly, because the bounds of the box are also constraints, whose roots are `low` and `high`.
   range = {low - beyond, high + beyond};
   std::array<Roots, kMaxSurfaces> roots;
   // is_positive[k]: whether constraint k is positive below all of its roots
@@ -75,7 +75,7 @@ bool Column::find_quadratic_roots(std::span<const double> registers, Signs& sign
     roots[k] = roots_of(c);
     is_positive[k] = c[2] != 0 ? c[2] > 0 : roots[k].count > 0 ? c[1] < 0 : c[0] >= 0;
     if ((plan_.formula.all & bit(k)) == 0 || is_positive[k]) continue;
-    // constraint k is negative below its first root, so it is >= 0 between two roots or above a single root
+    // Constraint k is negative below its first root, so it is satisfied between two roots or above a single root.
     const auto [r, count] = roots[k];
     if (count == 0 || !(r[0] <= range[1]) || !(count == 1 || r[1] >= range[0])) return false;
     const double rest = count == 2 ? 1e-2 * (r[1] - r[0]) : beyond;

@@ -14,7 +14,7 @@ void Column::find_transcendental_roots(const std::array<double, 2>& range, std::
                                        ColumnScratch& scratch) const {
   constexpr long kMaxEvaluations = 4000;  // maximum number of interval evaluations per column
   const std::size_t stage = plan_.program.stages().size() - 1;
-  // interval operations per evaluation
+  // Number of interval operations for one evaluation of a column.
   const long operations = static_cast<long>(plan_.program.stages()[stage].steps.size());
   evaluate_stage_of_z<double>(range[0], registers);
   for (std::size_t i = 0; i < curves_.size(); ++i)

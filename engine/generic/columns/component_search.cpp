@@ -10,7 +10,8 @@
 namespace pkm::generic {
 namespace {
 
-// factor by which outer coordinates are preferred in the choice of the side to bisect: contraction acts on v and z only
+// Factor by which outer coordinates are preferred when the side to be bisected is chosen, because contraction reduces
+// only the sides v and z.
 constexpr double kOuterBias = 16;
 
 double middle_of(const Interval& x) { return 0.5 * (x.lower + x.upper); }

@@ -8,7 +8,7 @@
 namespace pkm::generic {
 namespace {
 
-// relative to the half widths of the slice: vertices at a smaller distance count as the same point
+// Vertices at a smaller distance, relative to the half widths of the slice, count as the same point.
 constexpr double kCoincidence = 1e-3;
 constexpr std::size_t kMaxDegenerateCurves = 3;
 
@@ -60,7 +60,7 @@ std::vector<ArcEnd> arc_ends(const PlanarSlice& planar_slice, const PlanarSliceS
   planar_slice.for_each_arc_end(scratch, [&](EndLabel end, std::size_t first, double t) {
     const std::uint32_t surface = end >> 1U, label = vertex_of(surface, first, t, scratch);
     const Conic& P = scratch.conics[surface];
-    // at a turning point both roots s are equal, up to rounding errors
+    // At a turning point, both roots s are equal up to rounding errors.
     const bool turns = (label & kKind) == kTurningPoint && !P.is_straight();
     const double s = turns ? -0.5 * (P.c[2] + t * P.c[4]) / P.c[5] : end_at(end, t, scratch);
     ends.push_back({label, surface, scratch.v[0] + scratch.v[1] * t, scratch.z[0] + scratch.z[1] * s});
@@ -105,8 +105,8 @@ std::optional<Dual4> differentiable_critical_value(double at, std::vector<ArcEnd
   const auto factors = dependency_factors(curves);
   if (!are_dependent(curves, factors, curves.size() == 1 ? scratch.conics[bounds[0] & ~kKind].scale : 0)) return {};
   Components<4> change;
-  // slope: derivative of the sum of factor times curve equation with respect to the outer coordinate; size: sum of the
-  // magnitudes of its terms
+  // slope: derivative, with respect to the outer coordinate, of the sum of factor times curve equation; size: sum of
+  // the magnitudes of the terms of this sum.
   double slope = 0, size = 0;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const double each = factors[i] * by_x.boundary(bounds[i], t, s).change[0];

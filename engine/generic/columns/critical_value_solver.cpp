@@ -7,8 +7,8 @@ namespace pkm::generic {
 namespace {
 
 constexpr int kMaxExtrapolations = 18;  // after this many extrapolations, bisection only
-// maximum number of features that differ, and of their keys: with more of them there are too many pairs, and bisection
-// is as fast
+// Maximum number of features that differ, and of their keys. If there are more, the number of pairs is so large that
+// bisection is as fast.
 constexpr std::size_t kMaxFeatures = 100;
 
 }  // namespace
@@ -131,7 +131,7 @@ std::optional<double> CriticalValueSolver::zero_between(double low, double high,
   };
   const Point* const last = &side.points[static_cast<std::size_t>(side.count - 1)];
   if (side.count == 3 && !is_signed_) {
-    // choose the model, linear or square root, that predicts the last of three samples better from the first two
+    // Choose the model, linear or square root, that predicts the last of three samples better from the first two.
     const auto off = [&](bool is_root) {
       const double at = through(last[-2], last[-1], is_root), whole = at - last[-1].at, rest = at - last->at;
       const double ratio = last->size / last[-1].size;
@@ -152,7 +152,7 @@ double CriticalValueSolver::next_sample(double low, double high, double toleranc
   if (!at) at = zero_between(low, high, is_upper = !is_upper);
   if (++extrapolations_ % 6 == 0) return middle;
   if (!at) {
-    // The extrapolated value was close to one end of the bracket, but the slice there had another type: go away from
+    // The extrapolated value was close to one end of the bracket, but the slice there had another type: move away from
     // this end in increasing steps.
     if (!last_ || offset_ == 0) return middle;
     offset_ = std::fmax(16 * offset_, tolerance);

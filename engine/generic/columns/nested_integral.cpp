@@ -13,20 +13,21 @@
 namespace pkm::generic {
 namespace {
 
-// minimum width of an interval, relative to the range of the coordinate; narrower ones are ignored
+// Minimum width of an interval, relative to the range of the coordinate; narrower intervals are ignored.
 constexpr double kMinWidth = 1e-12;
-// width, relative to the range of the coordinate: in narrower intervals, rounding errors can mix slices of different
-// types
+// In intervals whose width, relative to the range of the coordinate, is smaller, rounding errors can mix slices of
+// different types.
 constexpr double kMinResolvableWidth = 1e-6;
 constexpr double kMinResolvableWidthInLines = 1e-4;  // kMinResolvableWidth for slices that are lines
 constexpr std::size_t kMaxIntervals = 3000;
-// if so many consecutive bisections leave nearly all of a change in one half, it is a discontinuity
+// If, in so many consecutive bisections, nearly all of a change of the measure is in one half, the measure is
+// discontinuous there.
 constexpr int kBisectionsOfJump = 5;
 // At this depth of the subdivision and beyond, an interval is not divided at changes of the type if its error is at
 // most kNoise of what the tolerance permits for a workspace that fills the whole range.
 constexpr int kReliableDepth = 2;
 constexpr double kNoise = 0.01;
-// relative to the largest slice: tolerance of missed_at_ends() if derivatives will be computed
+// Tolerance of SmoothInterval::missed_at_ends, relative to the largest slice, if derivatives will be computed.
 constexpr double kEndTolerance = 1e-7;
 
 /// Polynomial through the measures of the slices at the nodes of kronrod_rule(), evaluated at t in [0, 1] by the
@@ -94,7 +95,8 @@ NestedIntegral::NestedIntegral(SlicePlan plan, double tolerance)
   const SlicePlan& own = this->plan();
   const std::vector<std::uint32_t>& outputs = own.univariate.outputs();
   for (std::size_t i = 0; i < outputs.size(); i += 2) univariate_.push_back({outputs[i], outputs[i + 1]});
-  // columns with transcendental constraints are evaluated one by one, because these depend on all preceding stages
+  // Columns with transcendental constraints are evaluated one by one, because these constraints depend on all preceding
+  // stages.
   if (!ends_in_lines() || levels() == 0 || std::ranges::any_of(own.surfaces, &Surface::is_transcendental)) return;
   const auto stage = static_cast<int>(levels());
   const auto keep = [&](std::uint32_t at) {
@@ -125,7 +127,8 @@ Integral<double> NestedIntegral::measure_all(std::span<const double> inputs, Int
   const double unknown = find_univariate_changes(inputs, scratch);
   const Slice all = inside(0, scratch);
   const long evaluations = std::exchange(scratch.evaluations, 0);
-  // the budget is that of the search; the nodes of for_each_node() and add_gradient() are few
+  // The limit of evaluations applies to the search for critical values only; for_each_node() and add_gradient()
+  // evaluate few nodes.
   scratch.max_evaluations = std::numeric_limits<long>::max();
   scratch.measured = true;
   return {all.measure, all.error + unknown, evaluations};
@@ -172,7 +175,7 @@ double NestedIntegral::find_univariate_changes(std::span<const double> inputs, I
   if (!(high > low)) return 0;
   find_sign_changes(program, 1, univariate_, low, high, kMaxEvaluations, scratch.univariate, scratch.changes);
   double unknown = scratch.changes.undecided;
-  // do not search for critical values: the measure would remain unknown
+  // Do not search for critical values, because the measure would remain unknown.
   if (unknown > kMaxUndecidedShare * (high - low)) scratch.max_evaluations = 0;
   for (std::size_t i = 1; i < plan().range.size() && unknown > 0; ++i) unknown *= std::fabs(range(i)[1] - range(i)[0]);
   return unknown;
@@ -183,7 +186,7 @@ Slice NestedIntegral::inside(std::size_t level, IntegralScratch& scratch) const 
   for (std::size_t i = 0; i < independent.size(); ++i)
     if (!is_satisfied(scratch.registers[independent[i]])) return {.violated = static_cast<std::uint32_t>(i + 1)};
   if (level < levels()) return integrate(level, scratch);
-  // number of columns between two checks whether to stop; a column takes about a microsecond
+  // Number of columns that are evaluated between two checks for a stop request; a column takes about a microsecond.
   constexpr long kColumnsPerCheck = 16;
   if (!ends_in_lines() || scratch.evaluations % kColumnsPerCheck == 0 || is_long(scratch.column)) check_stop();
   ++scratch.evaluations;
@@ -314,7 +317,8 @@ void NestedIntegral::place_nodes(std::span<const double> inputs, std::span<const
 /// Divides the range of the only outer coordinate at its critical values, given to an accuracy below kBeside: they are
 /// bracketed between two slices beside them, because derivatives need more digits at roots of even order.
 void NestedIntegral::place_intervals(std::span<const double> values, IntegralScratch& scratch) const {
-  // relative to the range: distance of these slices, and of values that are bracketed together
+  // Relative to the range of the coordinate: distance of these slices from a critical value, and distance within which
+  // critical values are bracketed together.
   constexpr double kBeside = 1e-6, kTogether = 4 * kBeside;
   IntegralScratch::Level& own = scratch.levels[0];
   const auto [from, to] = plan().range[0];
@@ -380,12 +384,12 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
     embedded += jacobian * weights.fewer[i] * slices[i].measure;
     same = same && slices[i].hash == part.below.hash;
   }
-  // rule_error() would add in another order, and rounding errors decide which of two symmetric intervals is bisected
-  // first.
+  // rule_error() would add the terms in another order, and rounding errors would then decide which of two symmetric
+  // intervals is bisected first.
   for (std::size_t i = 0; i < NestedRule::kNodes; ++i)
     spread += weights.weight[i] * std::fabs(slices[i].measure * part.weight[i] / weights.weight[i] - part.value);
   part.error = quadpack_error(std::fabs(part.value - embedded), spread);
-  // Where the boundary has cusps, rounding errors change the type of an outer slice again and again.
+  // Where the boundary has cusps, rounding errors change the type of an outer slice repeatedly.
   const bool is_noise =
       level + 1 < levels() && depth >= kReliableDepth && part.error <= kNoise * tolerance_ * own.largest * whole;
   if (!same && depth < kMaxDepth && !is_noise &&
@@ -411,8 +415,8 @@ void NestedIntegral::add_interval(std::size_t level, SmoothInterval part, double
   own.parts.push_back(part);
 }
 
-/// Bisects the interval with the largest error until the total error is small enough, then the intervals whose
-/// polynomial is inaccurate at the endpoints.
+/// Bisects the interval with the largest error until the total error is small enough; then bisects the intervals at
+/// whose endpoints the polynomial through the nodes is inaccurate.
 void NestedIntegral::refine(std::size_t level, double whole, IntegralScratch& scratch) const {
   IntegralScratch::Level& own = scratch.levels[level];
   // The error of an inner integral may be as large as the error that is accepted for the largest inner integral.

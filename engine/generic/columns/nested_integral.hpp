@@ -23,7 +23,7 @@ namespace pkm::generic {
 /// over the coordinates in between, the error of the measure, and the type of the slice.
 struct Slice {
   double at = 0, measure = 0, error = 0;
-  SliceType hash = 0;  ///< type of the slice; 0 if it is empty
+  SliceType hash = 0;  ///< hash value of the type of the slice; 0 if the slice is empty
   /// 1 + index of a constraint that is independent of the inner coordinates and violated in the slice; 0 if there is no
   /// such constraint.
   std::uint32_t violated = 0;
@@ -60,9 +60,10 @@ struct SmoothInterval {
   /// Error, at the endpoints of the interval, of the polynomial through the measures at the nodes; computed only if
   /// derivatives will be computed.
   double missed_at_ends = 0;
-  /// Number of consecutive bisections of which this interval was the half with nearly all of the change of the measure.
+  /// Number of consecutive bisections in which this half contained nearly all of the change of the measure.
   int one_sided_bisections = 0;
-  /// Index in IntegralScratch::kept of the list for the first node; those of the other nodes follow.
+  /// Index in IntegralScratch::kept of the intervals for the first node of this interval; those for its other nodes
+  /// follow.
   std::size_t kept = 0;
 };
 
@@ -92,7 +93,7 @@ struct IntegralScratch {
     std::size_t seen_count = 0;    ///< number of elements of `seen` that are in use
     std::vector<double> hints;     ///< values of this coordinate at which the component search expects feasible points
     std::vector<double> places;    ///< values of this coordinate at which the first slices are evaluated
-    std::vector<Slice> scanned;    ///< slices at these first values of the coordinate
+    std::vector<Slice> scanned;    ///< slices at the coordinate values in `places`
     double largest = 0;            ///< largest measure of the slices of this level so far
     double irreducible_error = 0;  ///< sum of those errors of intervals that further subdivision cannot reduce
     CriticalValueSolver solver;    ///< extrapolates the critical value that is being located
@@ -172,14 +173,14 @@ class NestedIntegral {
   Integral<double> measure_all(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
   void start(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const;
   void set(std::size_t level, double at, IntegralScratch& scratch) const;
-  /// Whether the budget is used up. Parts of the workspace that are undecided by then count as error.
+  /// Whether the budget is used up. Parts of the workspace that are undecided at that time count as error.
   bool is_exhausted(const IntegralScratch& scratch) const;
   /// Finds all sign changes of the constraints in SlicePlan::univariate along the first coordinate: the outermost one,
   /// or v if there is none.
   /// @return upper bound of the volume that is uncertain because sign changes may not have been found
   double find_univariate_changes(std::span<const double> inputs, IntegralScratch& scratch) const;
-  /// The slice that is the integral over the coordinates from `level` on, for the current values of the coordinates
-  /// before.
+  /// The slice that is the integral over the coordinates from `level` on, for the current values of the preceding
+  /// coordinates.
   Slice inside(std::size_t level, IntegralScratch& scratch) const;
   /// Sets the coordinate of `level` to `at`. @return the slice at this value of the coordinate
   Slice slice(std::size_t level, double at, IntegralScratch& scratch) const;

@@ -12,8 +12,8 @@ namespace {
 // square-root singularity, it causes a relative error of derivatives of the order of its square root (3e-8 for 1e-15),
 // and of volumes of the order of its power 3/2; so 1e-11 is sufficient for volumes if the slices are lines.
 constexpr double kBracketWidth = 1e-15, kBracketWidthOfLines = 1e-11;
-// relative to the range of the coordinate: if two slices are farther apart, a small component can be the reason of
-// their difference, so that inner coordinates are sampled as densely as in the first scan
+// If two slices are farther apart than this, relative to the range of the coordinate, a small component can be the
+// reason why they differ. Inner coordinates are then sampled as densely as in the first scan.
 constexpr double kSmallDistance = 1e-3;
 constexpr double kMergeDistanceOfValues = 1e-8;  // relative to the range: closer critical values are merged
 // A change of type within kStepFactor steps of the previous one is due to rounding errors: the next step is longer by
@@ -46,8 +46,8 @@ bool NestedIntegral::is_discontinuous(const Slice& low, const Slice& high, std::
          std::fabs(low.measure - high.measure) > kDiscontinuity * scratch.levels[level].largest;
 }
 
-/// Appends the critical values between two slices in ascending order. When the budget is used up, a single one in the
-/// middle stands for them.
+/// Appends the critical values between two slices in ascending order. When the budget is used up, a single critical
+/// value in the middle represents all of them.
 void NestedIntegral::find_critical_values(std::size_t level, Slice from, Slice& to, double whole,
                                           CriticalValues& critical_values, IntegralScratch& scratch) const {
   const double least = kClearDistance * whole;
@@ -119,7 +119,7 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
   IntegralScratch::Level& own = scratch.levels[level];
   const bool is_innermost = level + 1 == levels(), are_columns = is_innermost && ends_in_lines(),
              are_sections = is_innermost && !ends_in_lines();
-  // 1 + index of the independent constraint that is violated on one side of the critical value only; 0 if there is none
+  // 1 + index of the independent constraint that is violated only on one side of the critical value; 0 if there is none
   std::uint32_t closing = 0;
   own.solver.reset(are_columns);
   const auto look = [&](double at) {
@@ -171,7 +171,7 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
     if (at <= low.at || at >= high.at) break;
     if (level == 0) scratch.is_scanning = high.at - low.at > kSmallDistance * whole;
     const Slice next = look(at);
-    // the sample has neither the type of `low` nor that of `high`: rounding errors may decide its type
+    // The sample has neither the type of `low` nor the type of `high`: rounding errors may have determined its type.
     if (extrapolates && next.hash != low.hash && next.hash != high.hash) {
       extrapolates = false;
       if (are_sections) {

@@ -16,13 +16,13 @@
 namespace pkm::generic {
 namespace {
 
-// distance from the critical value of the two slices that are compared, relative to the range of the coordinate
+// Distance from the critical value, relative to the range of the coordinate, of the two slices that are compared.
 constexpr double kOffset = 1e-9;
-// for a second pair of slices, which shows whether there is a square-root singularity, the distance is larger by this
-// factor
+// Factor by which this distance is larger for a second pair of slices, which shows whether there is a square-root
+// singularity.
 constexpr double kSecondOffset = 10;
-// change of the measure, relative to the largest slice, below which a discontinuity cannot be distinguished from a
-// continuous change
+// If the change of the measure, relative to the largest slice, is smaller, a discontinuity cannot be distinguished from
+// a continuous change.
 constexpr double kNegligible = 1e-6;
 
 using Intervals = std::vector<std::array<double, 2>>;
@@ -43,7 +43,7 @@ Intervals difference(const Intervals& x, const Intervals& y) {
 
 /// Divides intervals at the given points, at which the integrand can have square-root singularities.
 std::vector<Subinterval<double>> divided(const std::vector<Subinterval<double>>& pieces, std::vector<double> places) {
-  // points within this distance from the ends of an interval, relative to its length, do not divide it
+  // Points within this distance from the ends of an interval, relative to the interval's length, do not divide it.
   constexpr double kInset = 1e-6;
   std::ranges::sort(places);
   std::vector<Subinterval<double>> all;

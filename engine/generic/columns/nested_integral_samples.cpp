@@ -87,7 +87,7 @@ void NestedIntegral::search_empty_gaps(IntegralScratch& scratch) const {
   if (!has_found) scratch.levels[0].irreducible_error += search.undecided_volume(scratch.search);
   if (std::any_of(scanned.begin() + static_cast<std::ptrdiff_t>(known), scanned.end(), is_found)) {
     std::ranges::sort(scanned, {}, &Slice::at);
-  } else {  // the new slices are all empty: leave the integral unchanged
+  } else {  // all new slices are empty, so that the integral is left unchanged
     scanned.resize(known);
     scratch.evaluations = evaluations;
   }

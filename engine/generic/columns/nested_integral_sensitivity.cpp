@@ -54,7 +54,8 @@ Dual4 NestedIntegral::differentiable_end(std::size_t level, const SmoothInterval
     const double slope = slope_of_independent(level, closing, at, scratch);
     return differentiable_root(at, tangent(scratch.own, scratch.dual_registers), slope);
   }
-  if (may_jump(level, part, upper, scratch)) {  // mean over the points that become feasible or infeasible here
+  // The derivatives are the mean over the points that become feasible or infeasible at the critical value.
+  if (may_jump(level, part, upper, scratch)) {
     Components<4> motion;
     double all = 0;
     for (const double side : {-1.0, 1.0})
@@ -74,7 +75,7 @@ Dual4 NestedIntegral::differentiable_end(std::size_t level, const SmoothInterval
     return slice(level, place, scratch).hash == 0 ? std::vector<ArcEnd>()
                                                   : arc_ends(*planar_slice, scratch.planar_slice);
   };
-  // Take slices next to the critical value, or farther away as long as the type depends on rounding errors.
+  // Use slices next to the critical value, or slices farther away as long as the type depends on rounding errors.
   for (double share = kClearDistance; share < 1e-3; share *= 1e3) {
     const double beside = (upper ? -share : share) * (scratch.registers[to] - scratch.registers[from]);
     const std::vector<ArcEnd> outside = ends_at(at - beside), inside = ends_at(at + beside);

@@ -118,8 +118,8 @@ void PlanarSlice::find_pieces(bool independent, std::span<double> registers, Pla
 
 void PlanarSlice::find_combinatorial_type(PlanarSliceScratch& scratch) const {
   SliceType& type = scratch.type;
-  // round: set of the surfaces with an arc that ends at a turning point; cut: of those with an arc that ends at another
-  // vertex
+  // round: set of the surfaces with an arc that ends at a turning point; cut: set of the surfaces with an arc that ends
+  // at another vertex
   Signs round = 0, cut = 0;
   const auto add = [&](std::size_t surface, std::size_t first, double t) {
     const std::uint32_t label = vertex_of(surface, first, t, scratch);
@@ -150,7 +150,7 @@ void PlanarSlice::find_features(const PlanarSliceScratch& scratch, BoundaryFeatu
         std::find_if(scratch.vertices.begin() + static_cast<std::ptrdiff_t>(first), scratch.vertices.end(),
                      [&](const PlanarSliceScratch::Vertex& each) { return each.label == label; });
     if (vertex != scratch.vertices.end() && ((label & kKind) == kCrossing || (label & kKind) == kTurningPoint)) {
-      // two arcs share this vertex; list it once
+      // Two arcs share this vertex, which is listed only once.
       const BoundaryFeature feature{label, label, vertex->t, vertex->s};
       if (std::ranges::none_of(features, [&](const BoundaryFeature& m) {
             return m.key == label && m.t == feature.t && m.s == feature.s;

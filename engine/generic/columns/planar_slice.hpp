@@ -37,7 +37,8 @@ struct PlanarSliceScratch {
     std::size_t from_vertex, to_vertex;
     std::size_t first, count;  ///< index of the piece's first element in `spans`, and number of its elements
   };
-  /// The constraints that a conic represents, as sets: those with the polynomial P of the conic, and those with -P.
+  /// The constraints that a conic with the polynomial P represents, as two sets: constraints P >= 0, and constraints -P
+  /// >= 0.
   struct Meaning {
     Signs same, opposite;
   };

@@ -41,7 +41,8 @@ void PlanarSlice::add_gradient(double factor, std::span<double> registers, std::
     } else if ((label & kKind) == kIndependent) {
       std::vector<double>& own = scratch.other_adjoints;
       const double g = -sign * factor * scratch.z[1] * columns / slope_of_independent(k, t, registers, scratch, own);
-      // the constraint has no root here, but is undefined or infinite beyond the side: the side counts as fixed
+      // The constraint has no root here, but is undefined or infinite beyond the vertical side, so that the side counts
+      // as fixed.
       if (!std::isfinite(g)) return;
       for (std::size_t i = 0; i < own.size(); ++i) adjoints[i] += g * own[i];
     }

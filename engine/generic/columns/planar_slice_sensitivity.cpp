@@ -58,7 +58,7 @@ Dual4 PlanarSliceSensitivity::turning_point(std::uint32_t surface, const PlanarS
   const Conic& P = scratch_.conics[surface];
   const auto change = [&](double s) { return boundary(surface, at.t, s).change; };
   if (!P.is_straight()) return differentiable_root(at.t, change(at.s), gradient(P, at.t, at.s)[0]);
-  // The root s is infinite there, so that the derivative of P with respect to s is 0 for every s.
+  // The root s is infinite at this vertex, so that the derivative of P with respect to s is 0 for every s.
   return differentiable_root(at.t, (change(1) - change(-1)) * 0.5, P.c[4]);
 }
 

@@ -10,7 +10,8 @@
 namespace pkm::generic {
 namespace {
 
-constexpr double kNarrow = 1e-9;  // relative to the whole range: intervals of at most this width are not bisected
+// Intervals are not bisected if their width, relative to the whole range, is at most this.
+constexpr double kNarrow = 1e-9;
 
 class Search {
  public:
@@ -33,9 +34,9 @@ class Search {
         if (part.undecided == 0) continue;
         const double middle = 0.5 * (part.from + part.to);
         const bool is_exhausted = s_.evaluations >= max_evaluations;
-        // an interval of a few ulp, or with a NaN bound, has no midpoint
+        // An interval that is a few ulp wide, or has a NaN bound, has no midpoint.
         if (is_exhausted || part.to - part.from <= narrow || !(part.from < middle && middle < part.to)) {
-          // a sign change at the end of the domain of a constraint is located to the width of the interval
+          // A sign change at the end of the domain of a constraint is located only to the width of the interval.
           if (add_changes(part, part.undecided, !is_exhausted) < std::popcount(part.undecided) || is_exhausted)
             s_.undecided += part.to - part.from;
           continue;

@@ -28,7 +28,7 @@ struct CurveAt {
   bool is_circle;
   double u, w, c;
   bool is_conic = false;
-  bool swaps = false;  ///< see BoundaryCurve
+  bool swaps = false;  ///< conics only, see BoundaryCurve::swaps
   double xx = 0, xy = 0, yy = 0;
 
   double h(const Vector& p) const {
@@ -58,12 +58,13 @@ struct BoundaryCurve {
   Kind kind = Kind::line;
   std::array<Samples, 3> values;  ///< u, w and c of CurveAt, at the Chebyshev nodes
   std::array<Samples, 3> series;  ///< Chebyshev coefficients of u, w and c
-  /// Of a conic: xx, xy and yy of CurveAt at the Chebyshev nodes, and their Chebyshev coefficients.
+  /// Conics only: xx, xy and yy of CurveAt at the Chebyshev nodes, and their Chebyshev coefficients.
   struct Quadratic {
     std::array<Samples, 3> values, series;
   };
   std::optional<Quadratic> quadratic;
-  /// Of a conic: true: where feasible points may lie it consists of graphs x(y), otherwise of graphs y(x).
+  /// Conics only. true: in the region in which points can be feasible, the conic consists of graphs x(y); false: of
+  /// graphs y(x).
   bool swaps = false;
   /// Coefficients b_x, b_y and c of h(p) = a |p|^2 + b . p + c, at the Chebyshev nodes.
   std::array<Samples, 3> equation;
@@ -89,7 +90,7 @@ struct BoundaryCurve {
   /// @param tolerance  accepted interpolation error, relative to the magnitude of the functions
   /// @return false if the error of the interpolation is larger
   bool interpolate(double tolerance);
-  /// Of a conic: chooses `swaps`.
+  /// Chooses `swaps` for a conic.
   /// @param half_widths  of the rectangle |x| <= half_widths[0], |y| <= half_widths[1] that contains all feasible
   /// points
   /// @return false if the conic may have tangents of both directions in the rectangle

@@ -28,7 +28,7 @@ bool is_outside(const CurveAt& curve, const CurveAt& other) {
 /// @param touching  index (0 to 2) in `pairs` of the two curves that touch
 void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
                      const std::array<CurvePair*, 3>& pairs, std::size_t touching) {
-  // for each pair, the indices in the triple of its two curves
+  // For each pair, the indices in the triple of the two curves of the pair.
   constexpr std::size_t kMembers[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   const auto [a, b] = kMembers[touching];
   const std::size_t first = triple[a], second = triple[b], middle = kNodes / 2;
@@ -50,7 +50,7 @@ void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<
 /// @return false if the degeneracy is not supported
 bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std::size_t third, std::size_t moved,
                   std::vector<Root>& roots) {
-  // samples at which the discriminant, relative to its maximum, is smaller are not used
+  // Samples at which the discriminant is smaller, relative to its maximum, are not used.
   constexpr double kWellConditioned = 0.01;
   constexpr double kCoincide = 1e-11;
   const Samples& d = pair.discriminant.values;

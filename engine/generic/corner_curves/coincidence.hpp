@@ -2,8 +2,9 @@
 // Q = A^2, to which a constraint A + sqrt(Q) >= 0 is reduced.
 //
 // They are resolved by an infinitesimal perturbation of the curves (simulation of simplicity, Edelsbrunner and Mucke
-// 1990), which does not change the volume: curves that touch are moved apart, and of others the last one is moved
-// outward. The third curve then has a constant sign at the crossing of the other two.
+// 1990), which does not change the volume: two curves that touch each other are moved apart; if no two curves touch,
+// the curve with the highest index is moved outward. The third curve then has a constant sign at the crossing of the
+// other two.
 #pragma once
 
 #include "engine/generic/corner_curves/decomposition.hpp"

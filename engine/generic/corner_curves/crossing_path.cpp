@@ -41,8 +41,8 @@ double determinant_of(const Form& f) {
          0.25 * (f[1] * f[2] * f[4] - f[2] * f[2] * f[3] - f[1] * f[1] * f[5]);
 }
 
-/// Two conics with the crossings of two given ones, orthogonal to each other and of magnitude 1, so that they are
-/// independent where the given ones nearly coincide.
+/// Two conics that have the same crossings as two given conics; they are orthogonal to each other and of magnitude 1,
+/// and therefore linearly independent even where the given conics nearly coincide.
 struct Pencil {
   Form f{}, g{};
   bool is_defined = false;
@@ -87,7 +87,7 @@ struct Pencil {
 /// in s, and its root s(t) leaves a polynomial of degree four in t. The coordinates are rotated by arbitrary angles, so
 /// that two crossings of symmetric curves do not have the same t.
 std::size_t crossings_of(const Pencil& pencil, std::array<Homogeneous, 4>& points) {
-  // columns of a rotation matrix
+  // Columns of the matrix that rotates the coordinates.
   static constexpr std::array<Homogeneous, 3> kAxes = {
       Homogeneous{-0.727501992768388, -0.17051969862555966, 0.6645779735280675},
       Homogeneous{-0.3756511949969291, -0.7115472605304435, -0.5937900939970288},
@@ -103,7 +103,7 @@ std::size_t crossings_of(const Pencil& pencil, std::array<Homogeneous, 4>& point
   };
   Form a = rotated(pencil.f), b = rotated(pencil.g);
   if (std::fabs(a[5]) < std::fabs(b[5])) std::swap(a, b);
-  Form d;  // the conic d0(t) + d1(t) s
+  Form d;  // coefficients of the conic d0(t) + d1(t) s = 0, which is linear in s
   for (std::size_t i = 0; i < 6; ++i) d[i] = b[i] * a[5] - a[i] * b[5];
   const std::array<double, 3> d0{d[0], d[1], d[3]}, p0{a[0], a[1], a[3]};
   const std::array<double, 3> d11{d[2] * d[2], 2 * d[2] * d[4], d[4] * d[4]};
@@ -113,7 +113,7 @@ std::size_t crossings_of(const Pencil& pencil, std::array<Homogeneous, 4>& point
     for (std::size_t j = 0; j < 3; ++j) r[i + j] += p0[i] * d11[j] - pd[i] * d0[j] + a[5] * d0[i] * d0[j];
   std::size_t count = 0;
   std::array<double, 8> roots;
-  for (const bool reversed : {false, true}) {  // |t| < 1, and |1/t| < 1
+  for (const bool reversed : {false, true}) {  // first the roots with |t| < 1, then those with |1/t| < 1
     const std::size_t found = sign_changes(r, roots);
     for (std::size_t i = 0; i < found && count < 4; ++i) {
       const double x = reversed ? 1 : roots[i], w = reversed ? roots[i] : 1;
@@ -179,7 +179,7 @@ void conic_discriminant(const BoundaryCurve& conic, const BoundaryCurve& other, 
       largest = std::fmax(largest, size * size * (1 + std::fabs(along.b)));
       continue;
     }
-    // discriminant of the cubic det(x f + g), a x^3 + b x^2 + c x + d
+    // Discriminant of the cubic polynomial det(x f + g) = a x^3 + b x^2 + c x + d.
     const Pencil pencil(f, g);
     Form sum, difference;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -197,8 +197,8 @@ void conic_discriminant(const BoundaryCurve& conic, const BoundaryCurve& other, 
 }
 
 double refine_contact(const BoundaryCurve& conic, const BoundaryCurve& other, double tau) {
-  constexpr double kBeside = 1e-6;  // two crossings are sought at this distance from the root
-  constexpr double kStep = 1e-5;    // of numerical derivatives by tau
+  constexpr double kBeside = 1e-6;  // distance from the root at which the two crossings that merge are computed
+  constexpr double kStep = 1e-5;    // step of the numerical derivatives with respect to tau
   if (!other.is_circle() && !other.is_conic()) return tau;
   std::array<Homogeneous, 4> points, found;
   std::size_t count = 0;
@@ -208,7 +208,7 @@ double refine_contact(const BoundaryCurve& conic, const BoundaryCurve& other, do
     count = here;
     points = found;
   }
-  Homogeneous contact{};  // the middle of the two crossings that are closest to each other
+  Homogeneous contact{};  // midpoint of the two crossings that are closest to each other
   double largest = 0;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = i + 1; k < count; ++k) {
@@ -218,7 +218,7 @@ double refine_contact(const BoundaryCurve& conic, const BoundaryCurve& other, do
       for (std::size_t axis = 0; axis < 3; ++axis)
         contact[axis] = points[i][axis] + (cosine < 0 ? -1 : 1) * points[k][axis];
     }
-  // Newton's method for h = 0 of both curves and parallel gradients
+  // Newton's method for three equations: h = 0 for both curves, and parallel gradients.
   double at = tau, x = contact[0] / contact[2], y = contact[1] / contact[2];
   for (int step = 0; step < 6; ++step) {
     const CurveAt f = conic.at(at), g = other.at(at);
@@ -276,7 +276,7 @@ Vector CrossingPath::at(double tau, const CurveAt& first, const CurveAt& second)
     const Vector g = first.gradient(p), h = second.gradient(p);
     const double at_first = first.h(p), at_second = second.h(p), d = determinant(g, h);
     const Vector change{(at_second * g.y - at_first * h.y) / d, (at_first * h.x - at_second * g.x) / d};
-    // where the two curves touch, rounding errors would be magnified
+    // Where the two curves touch each other, the step would magnify rounding errors.
     if (!(std::fabs(change.x) + std::fabs(change.y) < 1e-6)) break;
     p = {p.x + change.x, p.y + change.y};
   }
@@ -299,7 +299,9 @@ bool follow_crossings(const BoundaryCurve& conic, const BoundaryCurve& other, co
       const auto& before = points[n - 1];
       auto& here = points[n];
       bool is_improved = !is_line && n + 1 < kNodes;
-      if (is_improved) {  // from the points at the node before; at the last node all crossings are found anew
+      // If is_improved, start from the crossings at the previous node; at the last node, all crossings are computed
+      // without start values.
+      if (is_improved) {
         const Pencil pencil(f[n], g[n]);
         for (std::size_t k = 0; k < count && is_improved; ++k) {
           here[k] = before[k];

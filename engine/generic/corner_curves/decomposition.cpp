@@ -10,10 +10,11 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-constexpr double kTiny = 1e-13;  // length of an interval of tau; in shorter ones no sample is taken
-// length of an interval of tau; in shorter ones the signs of functions are not reliable
+constexpr double kTiny = 1e-13;  // in intervals of tau that are shorter, no sample is taken
+// In intervals of tau that are shorter, the signs of functions are not reliable.
 constexpr double kShort = 1e-7;
-// two curves count as parallel if the relative distance of their centres, or the sine of their angle, is at most this
+// Two curves count as parallel if the relative distance of their centres, or the sine of the angle between them, is at
+// most this.
 constexpr double kParallel = 1e-13;
 constexpr double kUnresolved = 1e-9;  // maximum relative interpolation error of a discriminant or concurrence function
 
@@ -271,7 +272,7 @@ class Builder {
 
   /// Adds the events on a path.
   /// @param is_feasible  set to false if a necessary constraint is violated on the whole path
-  /// @return false if they are not resolved
+  /// @return false if the events are not resolved
   bool add_path_events(Pair& pair, const CrossingPath& path, std::int8_t number, bool& is_feasible) {
     Samples tau;
     for (std::size_t n = 0; n < kNodes; ++n) tau[n] = map_node(path.range, 0.5 * (1 + chebyshev_nodes()[n])).point;
@@ -279,7 +280,7 @@ class Builder {
       return Homogeneous{path.values[0][n], path.values[1][n], path.values[2][n]};
     };
     const std::size_t i = pair.first, j = pair.second;
-    const auto sample = [&](std::size_t k) {  // W^2 h of a curve
+    const auto sample = [&](std::size_t k) {  // values W^2 h of curve k along the path
       std::array<CurveAt, kNodes> at;
       sample_curve(curves_[k], path.range, tau, at);
       for (std::size_t n = 0; n < kNodes; ++n) function_.values[n] = homogeneous_value(at[n], point(n));

@@ -50,7 +50,8 @@ struct DecompositionScratch {
   struct Event {
     double at, width;    ///< value of tau and width of the undecided interval around it, see Root
     std::uint8_t third;  ///< index of the curve whose sign at the crossing may change
-    /// Branch of the crossing that it concerns, 1 or -1; 0: both. Of a pair with a conic: number of the path, from 1.
+    /// For a pair of circles or lines: the branch (1 or -1) of the crossing through which the third curve passes; 0:
+    /// both branches. For a pair with a conic: number of the crossing's path, from 1.
     std::int8_t branches;
   };
   /// A third curve that passes through a crossing of a pair of curves for all tau. After the perturbation
@@ -60,12 +61,13 @@ struct DecompositionScratch {
     std::int8_t branch;  ///< which of the pair's two crossings, 1 or -1; 0: both
     bool outside;
   };
-  /// Two curves, by their indices, that cross each other for at least some tau, and what happens at their crossings.
+  /// Two curves, given by their indices, that cross each other for at least some tau, and the values of tau at which
+  /// their crossings begin, end or change their weights.
   struct Pair {
     std::uint8_t first, second;
     bool has_branches;
     bool has_conic;
-    std::size_t first_path, path_count;  ///< of a pair with a conic: its crossings in Decomposition::paths
+    std::size_t first_path, path_count;  ///< for a pair with a conic: the crossings in Decomposition::paths
     Sampled discriminant;
     /// Roots in tau of the discriminant; between two consecutive ones the curves cross for all tau or for none.
     std::vector<Root> ends;

@@ -43,7 +43,8 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   by_curve.resize(segment.integral.curves.size());
   for (auto& curve : by_curve)
     for (Samples& each : curve) each.fill(0);
-  // As many nodes as the series of the curves need coefficients, and some more, because derivatives need more.
+  // Number of nodes: the number of coefficients that the series of the curves need, and some more, because derivatives
+  // need more.
   std::size_t terms = 1;
   for (const BoundaryCurve& curve : segment.slices.curves) terms = std::max(terms, curve.terms);
   const std::size_t nodes = terms <= 4 ? 8 : terms <= 14 ? 16 : kNodes;
@@ -84,7 +85,8 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
     const CurveAt curve = segment.slices.curves[i].at(tau);
     const CurveSource& source = segment.slices.sources[i];
     const auto& by = scratch.by_curve[i];
-    // The curve is given in the coordinates of the frame, in which an area is that in (v, z) divided by scale^2.
+    // The curve is given in the coordinates of the frame, in which an area equals the area in (v, z) divided by
+    // scale^2.
     const double u = frame.scale * by[0][node], w = frame.scale * by[1][node], c = by[2][node];
     if (source.kind == Kind::limit) {
       add_limit_gradient(source.surface, frame.v - frame.scale * curve.c, -frame.scale * c, scratch);
@@ -98,7 +100,8 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
     const auto add = [&](std::size_t coefficient, double adjoint) { scratch.adjoints[at[coefficient]] += adjoint; };
     switch (source.kind) {
       case Kind::circle: {
-        // with the coefficients c0 .. c3: centre (-c1/(2 c3), -c2/(2 c3)); squared radius |centre|^2 - c0/c3
+        // With the coefficients c0 .. c3 of the surface, the circle has the centre (-c1/(2 c3), -c2/(2 c3)) and the
+        // squared radius |centre|^2 - c0/c3.
         const double c3 = registers[at[3]];
         const double v = frame.v + frame.scale * curve.u, z = frame.z + frame.scale * curve.w;
         const double square = v * v + z * z - registers[at[0]] / c3;
@@ -116,7 +119,7 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
         break;
       }
       case Kind::conic: {
-        // coefficients of the surface in the frame, in which (v, z) = (frame.v, frame.z) + scale (x, y)
+        // Convert the coefficients of the surface to the frame, in which (v, z) = (frame.v, frame.z) + scale (x, y).
         const double factor = source.sign * frame.scale * frame.scale, s = frame.scale, v = frame.v, z = frame.z;
         const double of_1 = factor * by[2][node], of_x = factor * s * by[0][node], of_y = factor * s * by[1][node];
         add(0, of_1);

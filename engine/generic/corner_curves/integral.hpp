@@ -1,5 +1,5 @@
-// Volume of the slices of a segment, and its derivatives by the curves: adaptive Gauss-Kronrod quadrature of every
-// corner curve over the ranges in which it is active (decomposition.hpp).
+// Volume of the slices of a segment, and its derivatives with respect to the boundary curves: adaptive Gauss-Kronrod
+// quadrature of every corner curve over the ranges in which it is active (decomposition.hpp).
 //
 // At an end where the discriminant vanishes, the crossing behaves like a square root; the variable transformation of
 // math/quadrature.hpp makes the integrand analytic there. A range is therefore integrated with few nodes, whatever

@@ -2,9 +2,9 @@
 // independent of the inner coordinates changes its sign.
 //
 // A function of the outer coordinate (outer_plan.hpp) is interpolated on a segment in which it is analytic, and its
-// roots divide the segment. Functions that depend on the roots of others are analytic only after that, so the division
-// is repeated in the segments it leaves. At a root from which curves start like square roots the segment's variable is
-// transformed (OuterRange).
+// roots divide the segment. Functions that depend on the roots of others are analytic only after that, so the resulting
+// segments are divided again. At a root from which curves start like square roots the segment's variable is transformed
+// (OuterRange).
 #pragma once
 
 #include <deque>

@@ -8,9 +8,11 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-// maximum difference of the functions u, w and c of two curves that count as equal, relative to 1 + their magnitude
+// Two curves count as equal if the differences of their functions u, w and c, relative to 1 + the magnitude of the
+// function, are at most this.
 constexpr double kSame = 1e-12;
-// a curve does not pass through a rectangle if |h| is larger than this in it; the rectangle is enlarged by as much
+// A curve does not pass through a rectangle if |h| is larger than this everywhere in the rectangle, which is enlarged
+// by the same amount.
 constexpr double kMargin = 1e-9;
 constexpr std::size_t kMiddle = kNodes / 2;
 
@@ -254,7 +256,7 @@ void SliceCurves::remove_constant(std::size_t i, bool outside) {
     }
     const bool is_first = strip->first == i;
     auto& other = formula.literals[is_first ? strip->second : strip->first];
-    // all points are on that side of this line on which the strip is: the other line decides alone
+    // All points are on the side of this line on which the strip lies, so that the other line alone decides.
     if (is_first == outside) {
       const bool is_other_inside = is_first == strip->is_inside;
       (is_other_inside ? other.inside : other.outside) |= strip->surface;
@@ -392,7 +394,7 @@ SliceCurves::Status SliceCurves::build(const SlicePlan& plan, const OuterPlan& o
     add_bound(line, upper);
   }
   if (!add_limits(limits) || curves.size() > kMaxCurves) return Status::unresolved;
-  // maximum interpolation errors; limits have larger rounding errors near folds
+  // Maximum interpolation errors; the one of limits is larger, because limits have larger rounding errors near folds.
   constexpr double kConverged = 1e-12, kLimitConverged = 1e-10;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const bool is_limit = sources[i].kind == CurveSource::Kind::limit;

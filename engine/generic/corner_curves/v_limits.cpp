@@ -11,7 +11,8 @@ using Cell = LimitScratch::Cell;
 using Search = LimitScratch::Search;
 
 constexpr int kMaxBisections = 8;  // maximum number of successive bisections of the range of v
-// the sign of the curvature is not used before this many bisections, because a shorter subinterval is often monotone
+// Number of bisections before the sign of the curvature is used, because the limit is often monotone in a shorter
+// subinterval.
 constexpr int kBisectionsBeforeCurvature = 3;
 
 int sign_of(const Interval& x) { return x.lower > 0 ? 1 : x.upper < 0 ? -1 : 0; }
@@ -170,7 +171,7 @@ class LimitRootFinder {
 
   /// A root along v of a limit (`derivative` = 0) or of its first derivative (1), by Newton's method with a bracket.
   /// @param sign_at_lower  sign of the function at `lower`
-  /// @param v              first guess
+  /// @param v              start value of Newton's method
   double root_of(std::size_t limit, std::size_t derivative, double lower, double upper, int sign_at_lower, double v) {
     const auto limit_at = [&](double x) {
       evaluate_limits_at_v(plan_, x, s_);

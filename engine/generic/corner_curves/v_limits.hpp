@@ -72,7 +72,7 @@ struct LimitScratch {
 void start_limits(const SlicePlan& plan, std::span<const double> inputs, const std::array<Interval, 2>& box,
                   LimitScratch& scratch);
 
-/// Evaluates the stage of SlicePlan::limits that depends on the outer coordinate, for its value t.
+/// Evaluates the stage of SlicePlan::limits that depends on the outer coordinate, at the value t of this coordinate.
 void evaluate_limits_at_t(const SlicePlan& plan, double t, LimitScratch& scratch);
 /// Evaluates the stage of SlicePlan::limits that depends on v; to be called after evaluate_limits_at_t().
 void evaluate_limits_at_v(const SlicePlan& plan, double v, LimitScratch& scratch);

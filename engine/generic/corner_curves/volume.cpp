@@ -7,7 +7,8 @@
 namespace pkm::generic::corner_curves {
 
 double Volume::Scratch::work() const {
-  // cost of the roots of a function, and of an evaluation of the outer stage, relative to that of a quadrature node
+  // Cost of finding the roots of a function, and of evaluating the outer stage, relative to the cost of a quadrature
+  // node.
   constexpr double kFunction = 5, kRun = 1;
   double sum = kRun * static_cast<double>(segments.runs);
   for (std::size_t i = 0; i < segments.count; ++i) {
@@ -55,7 +56,7 @@ void Volume::find_critical_values(Scratch& scratch, std::vector<double>& values)
 
 std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, Scratch& scratch) const {
   constexpr std::size_t kMaxCells = 4000;
-  constexpr double kBetter = 0.1;  // the relative error aimed at is this fraction of the tolerance
+  constexpr double kBetter = 0.1;  // fraction of the tolerance that is used as the target of the relative error
   if (!find_ranges(inputs, scratch)) return {};
   if (!can_be_feasible(scratch.segments)) return Integral<double>{};
   const std::span<Segment> segments = scratch.segments.filled();
@@ -96,7 +97,7 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
     for (const BoundaryCurve& curve : segment.slices.curves) per_slice += (curve.is_conic() ? 200 : 12) * curve.tail;
     total.error += scale(segment) * per_slice * 0.5 * (segment.upper.at - segment.lower.at);
   }
-  // if no feasible point was found, let planar slices decide whether the workspace is empty or was missed
+  // If no feasible point was found, planar slices have to decide whether the workspace is empty or was missed.
   if (!(total.value > 0)) return {};
   return total;
 }

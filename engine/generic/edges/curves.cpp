@@ -190,7 +190,7 @@ bool add_curves_of_mirror_images(const Face& a, const Face& b, std::vector<Curve
   for (const double s : {1.0, -1.0}) {
     const Vector3 m = A.axis - B.axis * s, other_m = A.axis + B.axis * s;
     const double n = s * offset, other_n = -s * offset;
-    // 4 l^2 - K_a - K_b = -2 |P|^2 + v . P + r
+    // The other factor is 4 l^2 - K_a - K_b = -2 |P|^2 + v . P + r.
     const double r = 2 * l_2 + 2 * A.radius * A.radius - dot(between, between);
     Quadric plane, rest;
     if (norm(m) < kCoincident && std::fabs(n) < kCoincident * size) {
@@ -198,7 +198,7 @@ bool add_curves_of_mirror_images(const Face& a, const Face& b, std::vector<Curve
       plane = {.v = v, .k = k};
       rest = {.square = -2, .v = v, .k = r};
     } else {
-      // (K_a - K_b) = factor (Y_a - s Y_b)
+      // Factor for which K_a - K_b = factor (Y_a - s Y_b).
       const double factor = (dot(v, m) + k * n) / (dot(m, m) + n * n);
       if (norm(v - m * factor) > kCoincident * size || std::fabs(k - n * factor) > kCoincident * size * size) continue;
       plane = {.v = m, .k = n};
@@ -405,7 +405,7 @@ CurvePoint point(const Arc& arc, const Enclosure& u) {
   }
   const Enclosure x = (arc.order == 1 ? square(u) : u) * arc.direction, t = x + arc.t_0;
   CurvePoint at;
-  // sets p = o + s a + r b
+  // Computes p = o + s a + r b.
   const auto combine = [&](const Vector3& o, const Vector3& a, const Enclosure& s, const Vector3& b,
                            const Enclosure& r) {
     for (std::size_t i = 0; i < 3; ++i) at.p[i] = s * a[i] + r * b[i] + o[i];

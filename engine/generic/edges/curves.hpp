@@ -41,7 +41,7 @@ struct Curve {
   std::optional<Affine> square{};  ///< |p|^2 as an affine function of p, if one of the surfaces is a sphere
   Quadric with{};  ///< on_torus only: function of the second surface, for the vector from the centre of the torus
   std::optional<Quadric> cut{};  ///< function that vanishes where the two surfaces touch each other, if there is one
-  TorusFunction function{};      ///< of implicit curves: its zeros on a torus form the curve
+  TorusFunction function{};      ///< implicit curves only: the zeros of this function on a torus form the curve
 };
 
 /// An interval u in [0, length] of one branch of a curve.
@@ -58,7 +58,7 @@ struct Arc {
 /// @param bound  straight lines extend by this length in both directions [m]
 /// @return false if the surfaces are the same
 bool add_intersection(const Face& a, const Face& b, double bound, std::vector<Curve>& curves);
-/// The circle that separates an end face of a slide or crank from its fold.
+/// The circle that separates an end face (half sphere) of a slide or crank from its fold (cylinder or torus).
 Curve equator(const Face& end, const Face& fold);
 
 /// A root t of the trigonometric polynomial Curve::D, and its multiplicity (`order`).

@@ -184,7 +184,7 @@ Moments forms(const Face& face, const Vector3& p, const Vector3& dp) {
     }
     case Surface::torus: {
       const double u = dot(P, body.zero), w = dot(P, body.beside), l = body.crank, rod = body.radius;
-      // 1 or -1: sign of crank + rod cos b, the distance from the axis of the torus
+      // Sign (1 or -1) of crank + rod cos b, the signed distance of the point from the axis of the torus.
       const double outer = dot(P, P) + l * l > rod * rod ? 1 : -1;
       const double distance = outer * std::sqrt(u * u + w * w);
       if (distance == 0) break;

@@ -19,8 +19,8 @@ struct IntervalSeries {
   std::array<Interval, N + 1> c{};
 
   IntervalSeries() = default;
-  IntervalSeries(double constant) { c[0] = constant; }           // not explicit: formulas mix series with constants
-  IntervalSeries(const Interval& constant) { c[0] = constant; }  // not explicit: formulas mix series with constants
+  IntervalSeries(double constant) { c[0] = constant; }           // implicit, for formulas that mix series and constants
+  IntervalSeries(const Interval& constant) { c[0] = constant; }  // implicit, for formulas that mix series and constants
   /// The series of the variable x itself; x is a number or an interval.
   static IntervalSeries variable(const Interval& x) {
     IntervalSeries series(x);

@@ -40,7 +40,8 @@ class ProvenCurves : public ProvenSolid {
       if (i != a.body && i != b.body)
         tests_.push_back({i, &rule_of(i, nullptr)});
       else if (a.body != b.body && has_range(bodies_[i]) && !(i == a.body && a.surface == Surface::torus))
-        // q of the first torus is in its range anyway
+        // If the curve is on the torus of face a, its angle q is restricted to the range of q by construction, so that
+        // no test is needed.
         tests_.push_back({i, &rule_of(i, i == a.body ? &a.part : &b.part)});
     }
   }
@@ -78,7 +79,7 @@ class ProvenCurves : public ProvenSolid {
   std::vector<ProvenTest> tests_;
 
  private:
-  // Intersection curves, as in curves.cpp.
+  // Adds the intersection curves of two faces, with the same distinction of cases as in curves.cpp.
 
   void add_curves(const ProvenFace& a, const ProvenFace& b) {
     if (a.surface < b.surface) return add_curves(b, a);
@@ -209,7 +210,7 @@ class ProvenCurves : public ProvenSolid {
   void add_curves_on_torus(const ProvenFace& a, const ProvenFace& b) {
     set_tests(a, b);
     const IntervalBody& body = bodies_[a.body];
-    constexpr double kFirst = 0.8;  // maximum width of the boxes with which the search begins [rad]
+    constexpr double kFirst = 0.8;  // maximum width of the initial boxes of the search [rad]
     const auto divisions = [](const Interval& low, const Interval& high) {
       const int count = static_cast<int>((high.upper - low.lower) / kFirst) + 1;
       std::vector<Interval> places{low};
@@ -232,13 +233,14 @@ class ProvenCurves : public ProvenSolid {
     Interval f = function_on_torus(a, b, middle(angles[0]), middle(angles[1])).c[0];
     for (std::size_t i = 0; i < 2; ++i) f += by[i] * (angles[i] - middle(angles[i]).c[0]);
     if (sign_of(f) != 0) return;
-    // As parameter of the curve, take the angle along which the curve is flatter. The part of the torus in the box must
+    // Use the angle along which the curve is flatter as parameter of the curve. The part of the torus in the box must
     // not reach the axis of the torus.
     const IntervalBody& body = bodies_[a.body];
     const std::size_t steeper = std::fabs(by[1].middle()) >= std::fabs(by[0].middle()) ? 1 : 0;
     if (sign_of(body.crank + body.radius * cos(angles[1])) != 0)
       for (const std::size_t other : {steeper, 1 - steeper}) {
-        // Enclosures of a steep curve are wide: bisect the box instead.
+        // Enclosures of a curve that is steeper than kSteepest are wide: bisect the box instead, unless its side is
+        // shorter than kAnySlope [rad].
         constexpr double kSteepest = 3, kAnySlope = 1e-3;
         const double least = std::min(std::fabs(by[other].lower), std::fabs(by[other].upper));
         const bool is_flat = magnitude(by[1 - other]).upper <= kSteepest * least;
@@ -264,7 +266,8 @@ class ProvenCurves : public ProvenSolid {
 
   // Divides a curve with the parameter t into arcs.
 
-  // angle at which the division of a closed curve starts [rad]; an arbitrary one is probably no special point
+  // Angle at which the division of a closed curve starts [rad]; it is arbitrary, and therefore unlikely to coincide
+  // with a special point.
   static constexpr double kStart = 0.1234;
   // maximum length of an arc [rad]: over more than a quarter of a circle enclosures are too wide to decide a test
   static constexpr double kLongest = 1.6;

@@ -71,7 +71,7 @@ inline IntervalTrigonometric product(const IntervalLinear& a, const IntervalLine
   return {a[0] * b[0] + half * (cosines + sines), a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0],
           half * (cosines - sines), half * (a[1] * b[2] + a[2] * b[1])};
 }
-/// The value D(t), and slope(): the derivative D'(t).
+/// Value of a trigonometric polynomial D at t. slope() returns its derivative D'(t).
 inline Interval value(const IntervalTrigonometric& D, const Interval& t) {
   const Interval c = cos(t), s = sin(t);
   return D[0] + D[1] * c + D[2] * s + D[3] * (square(c) - square(s)) + D[4] * Interval(2) * s * c;

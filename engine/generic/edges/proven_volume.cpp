@@ -158,7 +158,7 @@ class Proof : public ProvenCurves {
            (Interval(range.to) - Interval(range.from));
   }
 
-  // order of the last term of the Taylor series that is integrated; must be even
+  // Order of the last term of the Taylor series that is integrated; it must be even.
   static constexpr std::size_t kOrder = 14;
 
   Interval integral(const ProvenArc& arc, double from, double to, int depth) {

@@ -8,15 +8,15 @@ Matrix<double, 3, 3> matrix_of(QuadricCoefficients f) {
   return {{f[4], 0.5 * f[7], 0.5 * f[8], 0.5 * f[7], f[5], 0.5 * f[9], 0.5 * f[8], 0.5 * f[9], f[6]}};
 }
 Vector3 linear_part(QuadricCoefficients f) { return {{f[1], f[2], f[3]}}; }
-/// The multiple nonzero eigenvalue (factor) of the matrix A of a sphere, A = factor I, or of a cylinder, A = factor (I
-/// - axis axis^T).
+/// The factor in the matrix A of a sphere, A = factor I, or of a cylinder, A = factor (I - axis axis^T): its multiple
+/// nonzero eigenvalue.
 double factor_of(QuadricCoefficients f, Body::Kind kind) {
   return (f[4] + f[5] + f[6]) / (kind == Body::Kind::sphere ? 3 : 2);
 }
 
 /// Finds the axis of the cylinder with the matrix A. @return false if A is not the matrix of a cylinder
 bool find_axis(const Matrix<double, 3, 3>& A, double factor, Vector3& axis) {
-  // axis axis^T if A is the matrix of a cylinder
+  // The matrix axis axis^T, provided that A is the matrix of a cylinder.
   Matrix<double, 3, 3> square = Matrix<double, 3, 3>::identity() - A * (1 / factor);
   std::size_t largest = 0;
   for (std::size_t i = 1; i < 3; ++i)
@@ -71,7 +71,7 @@ std::array<double, 10> by_coefficients(QuadricCoefficients f, const Body& body, 
   const Vector3 b = linear_part(f);
   if (body.kind == Body::Kind::plane) {
     const double length = norm(b);
-    // derivatives of the quantity with respect to b, multiplied by the length of b
+    // Derivatives of the quantity with respect to b, multiplied by the length of b.
     const Vector3 along = body.axis * (dot(body.axis, by.axis) + by.radius * body.radius) - by.axis;
     result[0] = by.radius / length;
     for (std::size_t i = 0; i < 3; ++i) result[1 + i] = along[i] / length;

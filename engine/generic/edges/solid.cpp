@@ -7,7 +7,7 @@
 namespace pkm::generic::edges {
 namespace {
 
-// bound of the rounding error of a body's function, relative to the size of the solid raised to the power degree()
+// Bound of the rounding error of a body's function, relative to the size of the solid raised to the power degree().
 constexpr double kFunctionRounding = 4e-15;
 constexpr int kMaxBisections = 36;
 constexpr long kMaxBoxes = 400'000;
@@ -101,8 +101,9 @@ class Evaluator {
     const PreparedBody& torus = *curve.faces[0]->body;
     set_tests(curve);
     long boxes = 0;
-    constexpr double kFirst = 0.8;  // maximum width of the boxes with which the search begins [rad]
-    // start of the angle b [rad], arbitrary, so that a symmetric solid has no special point there
+    constexpr double kFirst = 0.8;  // maximum width of the initial boxes of the search [rad]
+    // Value at which the range of the angle b starts [rad]; it is arbitrary, so that a symmetric solid is unlikely to
+    // have a special point there.
     constexpr double kStart = 2.9;
     const double width = torus.to - torus.from;
     const int along_q = static_cast<int>(width / kFirst) + 1, along_b = static_cast<int>(2 * kPi / kFirst) + 1;
@@ -167,7 +168,7 @@ class Evaluator {
       if (i != a->number && i != b->number) {
         tests_.push_back({i, &membership(bodies_[i], nullptr)});
       } else if (a->number != b->number && bodies_[i].kind >= Body::Kind::slide) {
-        // A curve on a torus needs no test of the range of that torus.
+        // A curve on a torus lies in the range of this torus by construction, so that no test is needed.
         const Face& face = i == a->number ? *a : *b;
         if (curve.kind < Curve::Kind::on_torus || &face != a)
           tests_.push_back({i, &membership(bodies_[i], &face.part)});
@@ -210,7 +211,7 @@ class Evaluator {
         return sign(f, powers_[degree(bodies_[tests_[i].body], k)], half);
       });
       if ((rule.holds & possible) == 0) {
-        // try this test first in the next interval: often it decides that one, too
+        // Try this test first in the next interval, because it often decides that interval, too.
         if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);
         return;
       }
@@ -448,7 +449,7 @@ class Evaluator {
       const PreparedBody& body = *face.body;
       const Moments& m = moments_[i];
       Body& by = gradient[face.number];
-      // the normal speed of a plane is the change of `radius` minus the change of `axis` . p
+      // The normal speed of a plane is the change of `radius` minus (change of `axis`) . p.
       if (face.surface == Surface::plane) {
         const double area = dot(body.axis, m.normal);
         by.radius = area;
@@ -491,7 +492,7 @@ class Evaluator {
   double undecided_ = 0;
   EdgeVolume result_;
 
-  // variables of the search along one arc, arc_
+  // Variables of the search along the arc arc_.
   const Arc* arc_ = nullptr;
   std::vector<Test> tests_;
   std::vector<Undecided> undecided_functions_;

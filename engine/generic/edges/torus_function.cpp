@@ -51,8 +51,8 @@ double sum(const Trigonometric& a, const Trigonometric& b) {
 TorusFunction::TorusFunction(const Face& torus, const Face& other) {
   const PreparedBody &own = *torus.body, &body = *other.body;
   const Vector3 d = torus.centre - other.centre;
-  // K = |P + d|^2 + k and Y = (P + d) . axis are quantities of the other body, with |P|^2 = crank^2 + rod^2 + 2 crank
-  // rod cos b
+  // Express the quantities K = |P + d|^2 + k and Y = (P + d) . axis of the other body, with |P|^2 = crank^2 + rod^2 + 2
+  // crank rod cos b
   const bool is_torus = other.surface == Surface::torus;
   const double l_2 = is_torus ? body.crank * body.crank : 0;
   Bilinear K = along(own, d * 2.0,
@@ -100,7 +100,7 @@ class Examination {
   CurveInBox run() const {
     if (std::fabs(centre_.f) > reach({true, true}) + rounding_error_) return {CurveInBox::State::absent};
     const std::array<double, 2> least{least_slope(0), least_slope(1)};
-    // As parameter of the curve, take the angle along which the curve is flatter.
+    // Use the angle along which the curve is flatter as parameter of the curve.
     const std::size_t other = std::fabs(centre_.by[1]) >= std::fabs(centre_.by[0]) ? 1 : 0;
     if (least[other] > 0 && (least[1 - other] > 0 || has_fixed_sides(other))) return found(other, least[other]);
     const std::size_t second = 1 - other;
@@ -207,7 +207,8 @@ Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, c
   };
   const auto [low, high] = arc.across;
   const double at_low = at(low).f, at_high = at(high).f;
-  // At an end of the arc f can have the same sign at both limits of the other angle: then the root is at one of them.
+  // At an end of the arc f can have the same sign at both limits of the other angle: the root is then at one of these
+  // limits.
   double root = std::fabs(at_low) < std::fabs(at_high) ? low : high;
   if ((at_low > 0) != (at_high > 0))
     root = refine_root_newton(
@@ -220,7 +221,7 @@ Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, c
   const TorusFunction::Value here = at(root);
   const double slope = -here.by[along] / here.by[other], h = parameter.reach();
   if (h == 0) return {root, slope * parameter.slope, 0, parameter.h};
-  // Bounds for a neighbourhood of the point. Those of the box are valid, too: use the smaller ones.
+  // Compute bounds for a neighbourhood of the point. The bounds of the box are valid, too; use the smaller ones.
   const double reach = arc.max_slope * h;
   const double least = std::max(
       arc.least, std::fabs(here.by[other]) - function.bend(other, along) * h - function.bend(other, other) * reach);

@@ -44,8 +44,9 @@ struct CrankRange {
   Term branch;
 };
 
-/// A link of constant length that rotates about a pivot, with the rod from its end C to B. Rates follow without angles:
-/// arm' = q' axis x arm, where q' = rod . B' / rod . (axis x arm). The pivot may move, but only along the axis.
+/// A link of constant length that rotates about a pivot, with the rod from its end C to B. The rate of the vector `arm`
+/// is computed without the joint angle: arm' = q' axis x arm, where q' = rod . B' / rod . (axis x arm). The pivot may
+/// move, but only along the axis.
 struct Arm {
   Vector3 arm;        ///< vector from the pivot to C, by formulas that contain square roots but no angles
   Vector3 axis, rod;  ///< axis: unit vector; rod: vector from C to B
@@ -67,7 +68,8 @@ struct RodAndPath {
 
 /// The inverse kinematics of a limb in closed form.
 struct Limb {
-  Term joint;                           ///< formula of the joint coordinate; undefined if a constraint is violated
+  Term joint;                           ///< formula of the joint coordinate; undefined if one of `constraints` is
+                                        ///< violated
   std::vector<Constraint> constraints;  ///< constraints under which the limb assembles
   /// Residual of the loop-closure equation, closure = 0. With Jq = -d closure/dq and G = d closure/dX, the velocities
   /// satisfy Jq qdot = G Xdot.
@@ -78,7 +80,7 @@ struct Limb {
   std::optional<Arm> arm{};
   /// For a planar crank with a rod: quadratic constraints that are equivalent to `constraints`.
   std::optional<Annulus> annulus{};
-  std::optional<RodAndPath> path{};  ///< for a rod with ball joints, if Ends::across is not given
+  std::optional<RodAndPath> path{};  ///< set for a rod with ball joints if Ends::across is not given
 };
 
 /// The positions A of the limb's joint on the base and B of its joint on the platform.

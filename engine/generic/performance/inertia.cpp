@@ -17,7 +17,7 @@ Term face_distance(const TermMatrix& W, const TermMatrix& offset, const std::vec
   Term square = n[0] * n[0], support = along(W, 0) - along(offset, 0);
   for (std::size_t i = 1; i < n.size(); ++i) square = square + n[i] * n[i];
   for (std::size_t j = 1; j < W.columns(); ++j) support = support + along(W, j);
-  // two parallel vectors w_i and w_j span no face
+  // Two parallel vectors w_i and w_j do not span a face.
   expression::Graph& graph = W.graph();
   const expression::Node is_face = graph.apply(expression::operation(">"), std::array{square.node(), graph.number(0)});
   return {graph,

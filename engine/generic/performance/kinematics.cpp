@@ -96,7 +96,8 @@ std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderK
   const auto add = [&](const TermMatrix& T, const std::string& velocity, const std::string& force,
                        const std::string& velocity_text, const std::string& force_text, bool is_rotation) {
     if (T.rows() == 0 || T.rows() > T.columns()) return;
-    if (is_rotation && T.rows() > nonzero_columns(T)) return;  // no motion for some angular velocities
+    // In this case, some angular velocities are not produced by any motion of the coordinates.
+    if (is_rotation && T.rows() > nonzero_columns(T)) return;
     const TermMatrix V = T * kinematics.inverse->adjugate;
     const auto [least, greatest] = eigenvalue_range(V * V.transposed());
     const std::string unit = is_rotation == turns ? "1" : is_rotation ? "rad/m" : "m/rad";

@@ -27,7 +27,7 @@ struct NamedTerm {
 
 /// Velocities of the joints and of the platform for unit rates of the coordinates: one column per coordinate.
 struct FirstOrderKinematics {
-  TermMatrix J;  ///< joints x coordinates: q' = J x'
+  TermMatrix J;  ///< Jacobian of the inverse kinematics, q' = J x': one row per joint, one column per coordinate
   /// T_v (rates of the coordinates to velocity of the origin) without rows for directions in which the origin cannot
   /// move; at most three rows.
   TermMatrix translation;
@@ -70,7 +70,7 @@ struct LimbSpring {
 };
 /// `stiffness` [N/m]: the minimum over all directions of the force at the origin of the platform, divided by the
 /// deflection in its direction; `rotational_stiffness` [N m/rad] for couples. The compliance is sum c_i a_i a_i^T,
-/// where the columns a_i of A^-1 are the displacements by which limb i alone gives way. With more limbs than
+/// where the columns a_i of A^-1 are the displacements of the platform if limb i alone is elastic. With more limbs than
 /// coordinates it is (A^T diag(1 / c) A)^-1, for which all compliances have to be positive.
 /// With `M_X`, the inertia by the coordinates, also `natural_frequency` [Hz], the lowest one: det(K - omega^2 M_X) = 0.
 std::vector<NamedTerm> stiffness_quantities(const FirstOrderKinematics& kinematics,
@@ -84,7 +84,7 @@ std::vector<NamedTerm> inertia_quantities(const FirstOrderKinematics& kinematics
 /// `acceleration` [m/s^2]: the acceleration of the platform's origin that the drives reach in every direction, from
 /// rest and under gravity. The accelerations for |tau_i| <= peak_i are the zonotope of the vectors
 /// w_i = peak_i T_v M_X^-1 J_i^T, moved by the weight; the result is the radius of the largest ball about 0 inside,
-/// the minimum over its faces; it is negative where the drives do not hold the weight.
+/// the minimum over its faces; it is negative where the drives cannot hold the weight.
 /// @param peak  maximum force or torque of each drive, by joint
 std::optional<NamedTerm> acceleration_quantity(const FirstOrderKinematics& kinematics, const TermMatrix& M_X,
                                                const std::vector<Term>& G_X, const std::vector<Term>& peak);

@@ -8,7 +8,8 @@ namespace {
 
 using expression::Minors, expression::Term, expression::TermMatrix;
 
-/// Rounding errors of determinants, relative to the sum of those of a matrix: smaller ones count as 0.
+/// Determinants that are smaller, relative to the sum of the determinants of a matrix, are rounding errors and count as
+/// 0.
 constexpr double kRounding = 1e-12;
 /// Value of a face that does not exist, which restricts nothing.
 constexpr double kNoFace = 1e300;
@@ -36,8 +37,8 @@ Term dot(const std::vector<Term>& x, const std::vector<Term>& y) {
 struct Faces {
   std::vector<Term> normal;
   std::vector<std::size_t> cables;  ///< cables whose columns do not lie in the face
-  std::vector<Term> along;          ///< components of these columns along the normal
-  Term sum;                         ///< sum of their absolute values
+  std::vector<Term> along;          ///< components of the columns of `cables` along the normal
+  Term sum;                         ///< sum of the absolute values of `along`
 };
 
 class Zonotope {
@@ -91,7 +92,7 @@ class Zonotope {
     }
     for (std::size_t j = 0; j < A_.columns(); ++j) {
       if ((columns >> j & 1U) != 0) continue;
-      // normal . column j is the determinant of column j followed by the others
+      // The scalar product of the normal and column j is the determinant of column j followed by the other columns.
       const Term determinant = all_.of(columns | 1U << j);
       const bool is_odd = std::popcount(columns & ((1U << j) - 1)) % 2 != 0;
       faces.cables.push_back(j);
@@ -119,7 +120,7 @@ Term factor_of(const Faces& faces) {
     smallest = smaller(smallest, each);
   }
   const Term sum = sum_of(faces.along, graph), positive = faces.sum + sum, negative = faces.sum - sum;
-  // negative if all components have the same sign
+  // This difference is negative if all components have the same sign.
   const Term sides = smaller(largest, -smallest) / larger(largest, -smallest);
   const Term rounding(graph, kRounding);
   return if_greater(sides, rounding, smaller(positive, negative) / larger(positive, negative), sides - rounding * 2);
@@ -146,7 +147,7 @@ TensionBalance tension_balance(const TermMatrix& J, const TermMatrix& translatio
       for (std::size_t j = 0; j < faces.normal.size(); ++j) along = along + translation(i, j) * faces.normal[j];
       square = square + along * along;
     }
-    // a face whose normal is a pure moment limits no force
+    // A face whose normal is a pure moment does not limit the force.
     const Term zero(zonotope.graph(), 0.0);
     return if_greater(square, zero, slack(faces) / sqrt(square), Term(zonotope.graph(), kNoFace));
   });

@@ -79,7 +79,7 @@ class ToleranceProblem {
     found.largest_scale = largest_scale();
     found.no_singularities = no_singularities_;
     const std::optional<bounds::Violation> known = search(found.largest_scale, stop);
-    // Constraints that have to be valid for smaller deviations only have tighter enclosures.
+    // Constraints whose deviations are restricted to smaller values have tighter enclosures.
     const ParametricConstraints close = constraints(known ? known->scale : found.largest_scale);
     const bounds::DeviationBox box = bounds::largest_deviation_box(close, ranges_, found.largest_scale, known,
                                                                    {options.gap, options.max_boxes, stop});
@@ -137,7 +137,7 @@ class ToleranceProblem {
     all.clear();
     std::vector<bounds::NamedMatrix> matrices = jacobians(e_.model, graph, values);
     const auto is_sign = [&](Node node) {
-      // -1, if the node is no input, becomes a huge number
+      // If the node is not an input, its index -1 becomes a huge number.
       const auto input = static_cast<std::size_t>(graph[node].input);
       return input >= e_.model.inputs.sign(0) && input < e_.model.inputs.sign(e_.model.inputs.signs);
     };
@@ -246,7 +246,8 @@ ToleranceProportions cheapest_proportions(const Mechanism& mechanism, std::span<
   if (largest == 0) return costs;  // all parameters are 0: certified_tolerances() reports this as an error
   const std::size_t count = costs.parameters.size();
   std::vector<ToleranceRow> rows(count);
-  double scale = std::numeric_limits<double>::infinity();  // factor of the given proportions, which are tried first
+  // Factor by which the given proportions are multiplied; these are tried first.
+  double scale = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count; ++i) {
     const double value = std::fabs(parameters[costs.parameters[i]]);
     rows[i] = {std::vector<double>(count), kLargestShare * (value > 0 ? value : largest)};
@@ -272,7 +273,7 @@ ToleranceProportions cheapest_proportions(const Mechanism& mechanism, std::span<
       if (found->gradient.empty()) break;  // the robot without deviations does not do the task
       ToleranceRow row;
       for (std::size_t i = 0; i < count; ++i) {
-        // change of the constraint if parameter i deviates by its whole tolerance
+        // Change of the constraint if parameter i deviates by its whole tolerance.
         const double effect = std::fabs(found->gradient[problem.axes_of_poses() + i]);
         row.coefficients.push_back(effect / made.sizes[i]);
         row.bound += found->scale * effect;

@@ -17,7 +17,7 @@ namespace pkm::generic {
 /// The task of a robot: all poses of a box, or all instants of a motion.
 struct PoseSet {
   std::vector<std::array<double, 2>> ranges = {};  ///< range of each coordinate; lower = upper fixes it
-  const Motion* motion = nullptr;                  ///< motion that replaces the ranges; null: the ranges are used
+  const Motion* motion = nullptr;                  ///< examined instead of `ranges`; null: `ranges` is examined
 };
 
 /// Deviations of parameters, which are independent of each other: each is at most a common scale times its size.
@@ -26,7 +26,8 @@ struct ToleranceProportions {
   std::vector<double> sizes;            ///< maximum deviation of each of these parameters at scale 1 [SI], > 0
 };
 
-/// A robot with deviations of its parameters that does not do the task; at scale 0 it is the design itself.
+/// A robot whose parameters deviate from the design and that does not do the task. If the scale is 0, the design itself
+/// does not do it.
 struct ToleranceViolation {
   double scale = 0;                ///< maximum over the parameters of deviation / ToleranceProportions::sizes
   std::vector<double> parameters;  ///< values of all parameters of the robot [SI]
@@ -38,7 +39,8 @@ struct ToleranceViolation {
 struct CertifiedTolerances {
   double scale = 0;  ///< all robots whose deviations have at most this scale are proved to do the task
   std::optional<ToleranceViolation> violation;  ///< the robot of smallest scale that is known not to do the task
-  double largest_scale = 0;           ///< scale at which a parameter could become 0; larger scales are not examined
+  double largest_scale = 0;           ///< smallest scale at which a parameter could become 0; larger scales are not
+                                      ///< examined
   Unsupported no_singularities = {};  ///< reason why singularities were not examined; empty if they were
   std::size_t boxes = 0;              ///< number of boxes examined
   bool stopped = false;

@@ -38,7 +38,7 @@ std::vector<bounds::NamedMatrix> jacobians(const Model& model, Graph& graph, std
         matrix.entries.push_back(expression::derivative(graph, closure, variable));
         entries.push_back(matrix.entries.back());
       }
-  // substitute the joint coordinates as functions of the pose
+  // Substitute the joint coordinates by functions of the pose.
   std::vector<std::optional<Node>> joints(at.count());
   for (std::size_t i = 0; i < at.joints; ++i) joints[at.joint(i)] = roots[closures.size() + i];
   graph = expression::substitute_nodes(graph, joints, entries);

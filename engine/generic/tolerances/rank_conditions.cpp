@@ -12,12 +12,12 @@ namespace {
 /// of columns.
 /// @param entries  elements of the matrix, row by row
 Term determinant(Graph& graph, const std::vector<Term>& entries, std::size_t size) {
-  // determinants of the first rows and a set of columns, by set
+  // For each set of columns, the determinant of the submatrix that consists of the first rows and these columns.
   std::vector<Term> minors(std::size_t{1} << size, Term(graph, 1.0));
   for (std::size_t columns = 1; columns < minors.size(); ++columns) {
     const auto row = static_cast<std::size_t>(std::popcount(columns)) - 1;
     Term sum(graph, 0.0);
-    bool is_negative = row % 2 == 1;  // whether the term of the next column is subtracted
+    bool is_negative = row % 2 == 1;  // true: the term of the next column is subtracted
     for (std::size_t j = 0; j < size; ++j) {
       if (!(columns >> j & 1U)) continue;
       const Term product = entries[row * size + j] * minors[columns ^ (std::size_t{1} << j)];

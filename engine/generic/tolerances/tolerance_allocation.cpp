@@ -9,7 +9,7 @@ std::vector<double> allocate_tolerances(const std::vector<double>& costs, const 
   constexpr int kMaxIterations = 10000;
   constexpr double kAccuracy = 1e-6;  // accepted relative violation of a row, and weighted mean of slack / bound
   std::vector<double> tolerances(costs.size()), multipliers(rows.size(), 1.0);
-  // The left side of a row, relative to its bound.
+  // Ratio of the left side of a row to its bound.
   const auto usage = [&](const ToleranceRow& row) {
     double sum = 0;
     for (std::size_t i = 0; i < tolerances.size(); ++i) sum += row.coefficients[i] * tolerances[i];
@@ -22,7 +22,7 @@ std::vector<double> allocate_tolerances(const std::vector<double>& costs, const 
       for (std::size_t r = 0; r < rows.size(); ++r) price += multipliers[r] * rows[r].coefficients[i] / rows[r].bound;
       tolerances[i] = std::sqrt(costs[i] / price);
     }
-    // stop if complementary slackness holds: for each row, the multiplier is 0, or the left side equals the bound
+    // Stop if complementary slackness holds: for each row, the multiplier is 0, or the left side equals the bound.
     maximum = 0;
     double total = 0, slack = 0;
     for (std::size_t r = 0; r < rows.size(); ++r) {

@@ -44,7 +44,7 @@ void Breeder::create_children(std::uint32_t generation, std::span<const std::int
       make_child(pool, parent_indices_[2 * k], parent_indices_[2 * k + 1], stream, child(k));
     }
   };
-  // Fewest children for which several threads are used: one child takes only 0.2 us.
+  // Minimum number of children for which several threads are used, because creating one child takes only 0.2 us.
   constexpr std::size_t kMinSharedChildren = 1000;
   if (count < kMinSharedChildren)
     make_children(0, count);

@@ -77,7 +77,7 @@ class Nsga2Selection final : public SurvivorSelection {
 
   void select_by_fronts() {
     non_dominated_sort(scores_, front_index_);
-    // members of each front, by index of the front; a member is an index into feasible_rows_
+    // For each front, its members, as indices into feasible_rows_.
     std::vector<std::vector<std::size_t>> members;
     for (std::size_t i = 0; i < feasible_rows_.size(); ++i) {
       if (front_index_[i] >= members.size()) members.resize(front_index_[i] + 1);
@@ -150,7 +150,8 @@ std::vector<OptionSpec> nsga2_options() {
   for (OptionSpec& spec : specs) {
     // Differences of members from distant parts of the front, as in differential crossover, rarely improve a design.
     if (spec.name == "crossover") spec.initial = "sbx";
-    if (spec.name == "tolerance") spec.initial = 1e-4;  // smaller than this, the hypervolume grows almost without end
+    // With a smaller tolerance, the hypervolume would increase almost without end.
+    if (spec.name == "tolerance") spec.initial = 1e-4;
     if (spec.name != "population") continue;
     spec.initial = std::int64_t{100};
     spec.meaning = "designs per generation";

@@ -71,7 +71,7 @@ class IpoptProblem final : public Ipopt::TNLP {
     return point.usable;
   }
   bool eval_jac_g(Index n, const Number* u, bool, Index m, Index, Index* row, Index* column, Number* values) override {
-    if (!values) {  // Ipopt requests the sparsity structure, which is dense here
+    if (!values) {  // Ipopt requests the sparsity structure of the Jacobian, which is dense
       for (Index k = 0; k < n * m; ++k) {
         row[k] = k / n;
         column[k] = k % n;
@@ -169,7 +169,7 @@ class IpoptSolver final : public Solver {
     options->SetStringValue("sb", "yes");  // Ipopt prints no banner
     options->SetIntegerValue("print_level", 0);
     options->SetStringValue("hessian_approximation", "limited-memory");
-    // Practically unlimited, because the stage counts evaluations itself.
+    // The limit of Ipopt is practically infinite, because the stage counts evaluations itself.
     options->SetIntegerValue("max_iter", 1000000);
     options->SetNumericValue("bound_relax_factor", 0);
     options->SetNumericValue("tol", 1e-9);
@@ -207,7 +207,7 @@ std::unique_ptr<Optimiser> make_ipopt(const Options& options, const DesignSpace&
   const auto solver = std::make_shared<IpoptSolver>(options);
   {
     const std::lock_guard guard(ipopt_mutex);
-    solver->application();  // created only to check the options
+    solver->application();  // this application is created only to check the options
   }
   plan.solver = solver;
   plan.concurrent = false;

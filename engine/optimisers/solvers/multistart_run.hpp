@@ -13,7 +13,7 @@ struct MultistartRun {
   EvaluationTable table;     ///< evaluations of this start so far
   EvaluationTable recorded;  ///< evaluations that an earlier, interrupted run recorded, and which are replayed
   bool ended = false;
-  bool is_local = false;      ///< true if this MPI rank runs the start
+  bool is_local = false;      ///< true if this MPI rank runs the solver from this start
   StartOutcome outcome = {};  ///< its row numbers refer to `table` of this start
   std::string warning = {};
 

@@ -1,9 +1,9 @@
 // Solver stage with NLopt.
 //
 // NLopt is a C library, through which no exception may propagate: instead of throwing, the callbacks force a stop and
-// return some number. The returned status is not reliable: SLSQP can succeed with x = NaN or at an infeasible point,
-// and report a round-off failure at the true optimum. COBYLA is not offered, because its inner loop can hang and ignore
-// all limits.
+// return an arbitrary number. The returned status is not reliable: SLSQP can succeed with x = NaN or at an infeasible
+// point, and report a round-off failure at the true optimum. COBYLA is not offered, because its inner loop can hang and
+// ignore all limits.
 #include <algorithm>
 #include <memory>
 #include <new>
@@ -23,10 +23,11 @@ namespace {
 struct Algorithm {
   const char* name;
   nlopt_algorithm id;
-  bool gradient, constraints;  ///< the algorithm uses gradients; it handles inequality constraints
-  bool local;                  ///< can be the inner algorithm of the algorithms auglag and mlsl
-  bool inner;                  ///< requires an inner algorithm, which is a local one
-  bool population;             ///< has a population whose size can be selected
+  bool gradient, constraints;  ///< gradient: the algorithm uses gradients; constraints: it handles inequality
+                               ///< constraints
+  bool local;                  ///< true: the algorithm can be the inner algorithm of auglag and mlsl
+  bool inner;                  ///< true: the algorithm requires an inner algorithm, which is a local one
+  bool population;             ///< true: the algorithm has a population whose size can be selected
   const char* meaning;
 };
 

@@ -32,7 +32,7 @@ const NonlinearProgram::Point* NonlinearProgram::evaluate(const double* u) noexc
       evaluate_new_row({clamped.data(), variables});
     }
     if (stop_ == Stop::not_finite) return nullptr;
-    // The point differs from the current one in the epigraph variable t only, which needs no evaluation.
+    // The point differs from the current one only in the epigraph variable t, so that no evaluation is needed.
     if (clamped != current_unit_) {
       current_unit_ = clamped;
       update_point(row_, current_unit_.back());
@@ -58,8 +58,8 @@ void NonlinearProgram::evaluate_new_row(std::span<const double> u) {
   const DesignSpace& space = context_.problem.space();
   const std::size_t row = table_.extend(1);
   const auto design = table_.design(row);
-  // use the coordinates of the start design exactly, without rounding errors of a conversion to unit coordinates and
-  // back
+  // Use the coordinates of the start design exactly, without the rounding errors of a conversion to unit coordinates
+  // and back.
   for (std::size_t i = 0; i < design.size(); ++i)
     design[i] = u[i] == start_unit_[i] ? start_design_[i] : space.from_unit(i, u[i]);
   context_.evaluator.evaluate(context_.problem, table_, row);

@@ -63,7 +63,7 @@ class SolverStageRun {
     } catch (const Stopped&) {  // thrown during an evaluation, which is repeated when the study is resumed
       merger_.stop();
     } catch (...) {
-      merger_.stop();  // the other starts stop, too
+      merger_.stop();  // stops the runs of the other starts, too
       throw;
     }
   }

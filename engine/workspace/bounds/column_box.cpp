@@ -25,7 +25,8 @@ std::int64_t ColumnGrid::step_above(double z, std::int64_t from, std::int64_t to
 
 namespace {
 
-constexpr std::int64_t kMinSplitSize = 64;  // segments of fewer steps of the z grid are not split around a root
+// Segments that are shorter, in steps of the z grid, are not split around a root.
+constexpr std::int64_t kMinSplitSize = 64;
 
 /// Merges adjacent segments of a column whose undecided constraints are the same.
 void merge(std::vector<Segment>& segments) {
@@ -67,7 +68,7 @@ ColumnPruner::Root ColumnPruner::enclose_root(std::size_t constraint, const Segm
   root.expansion = grid_.step_below(estimate, segment.from, segment.to);
   if (!root.is_enclosed) return root;
   const Interval z_c(grid_.at(root.expansion));
-  if (!over_box.is_known) {  // no derivatives by x: enclose the root over every x directly
+  if (!over_box.is_known) {  // the derivatives with respect to x are unknown: enclose the root over every x directly
     root.range = root.mean = z_c - constraints_.value(constraint, z_c, scratch.box) / by_z;
     root.is_enclosed = !root.range.is_empty();
     return root;
@@ -118,7 +119,7 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
   };
   IntervalBox sides, centre;
   Interval area(1.0);
-  double widest = 0;  // longest side of the box, relative to the whole range
+  double widest = 0;  // longest side of the box, relative to the range of its axis
   for (std::size_t axis = 0; axis < z; ++axis) {
     const auto [from, to] = box.side[axis];
     sides[axis] = {from, to};

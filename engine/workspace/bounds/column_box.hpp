@@ -61,11 +61,11 @@ struct Step {
     split = 's',       ///< divided at `from` and `to` into up to three segments
     /// The only undecided constraint has exactly one root over every x, by the mean value theorem about `expansion`.
     one_root = 'r',
-    open = 'n',  ///< undecided
+    open = 'n',  ///< the segment remains undecided
   };
   Kind kind;
   std::size_t constraint = 0;
-  std::int64_t from = 0, to = 0, expansion = 0;  ///< steps of the ColumnGrid
+  std::int64_t from = 0, to = 0, expansion = 0;  ///< positions on the z axis, as numbers of steps of the ColumnGrid
 };
 
 /// A box of the outer coordinates x, with the segments of the column coordinate z over it.
@@ -76,7 +76,7 @@ struct ColumnBox {
   Interval volume{0.0};           ///< enclosure of the volume over the box
 };
 
-/// Prunes the columns over boxes.
+/// Decides on which parts of the columns over a box the constraints are satisfied or violated.
 class ColumnPruner {
  public:
   ColumnPruner(const Constraints& constraints, const ColumnGrid& grid,
@@ -98,9 +98,10 @@ class ColumnPruner {
  private:
   /// The root z*(x) of a constraint along z, for all x in a box.
   struct Root {
-    bool is_continuous = false;  ///< the constraint is continuous on box and segment
-    bool is_enclosed = false;    ///< it is strictly monotonic in z there; `range` and `mean` are valid
-    bool is_increasing = false;  ///< it increases with z
+    bool is_continuous = false;  ///< true: the constraint is continuous on the box and the segment
+    bool is_enclosed = false;    ///< true: the constraint is strictly monotonic in z there; `range` and `mean` are
+                                 ///< valid
+    bool is_increasing = false;  ///< true: the constraint increases with z
     Interval range;              ///< R: contains z*(x) for all x of the box
     Interval mean;               ///< contains the mean of z* over the box
     std::int64_t expansion = 0;  ///< z_c, a step of the grid: approximately the root over the centre

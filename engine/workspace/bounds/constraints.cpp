@@ -35,7 +35,7 @@ Constraints::Constraints(Graph graph, const std::vector<NamedConstraint>& constr
   std::vector<Node> outputs;
   for (std::size_t k = 0; k < roots.size(); ++k) {
     const auto here = roots.begin() + static_cast<std::ptrdiff_t>(k);
-    if (std::find(roots.begin(), here, *here) != here) continue;  // identical to an earlier constraint
+    if (std::find(roots.begin(), here, *here) != here) continue;  // the constraint is identical to an earlier one
     Constraint constraint{.name = constraints[k].name, .node = constraints[k].node, .value = {}, .derivatives = {}};
     outputs.push_back(roots[k]);
     for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
@@ -87,7 +87,8 @@ void Constraints::set_box(const IntervalBox& box, Scratch& scratch) const {
   for (std::size_t axis = 0; axis + 1 < axes_.size(); ++axis)
     if (registers_[axis]) scratch.registers_[*registers_[axis]] = box[axis];
   scratch.box_version_ = ++scratch.version_;
-  scratch.last_side_ = Interval::empty();  // an empty side, which differs from that of every box
+  // An empty side differs from the sides of all boxes, so that run() computes all values again.
+  scratch.last_side_ = Interval::empty();
 }
 
 void Constraints::run(const Subprogram& subprogram, const Interval& last_side, Scratch& scratch) const {

@@ -31,7 +31,7 @@ struct NamedConstraint {
   expression::Node node;
 };
 
-/// Immutable and thread-safe.
+/// Constraints g >= 0 that are compiled to an interval program. Immutable and thread-safe.
 class Constraints {
  public:
   /// Registers of one worker. They cache results: program steps that do not depend on the last axis are evaluated once
@@ -39,8 +39,9 @@ class Constraints {
   class Scratch {
     friend Constraints;
     std::vector<Interval> registers_;
-    std::vector<std::uint64_t> versions_;   ///< by register: version of the inputs for which it was computed
-    std::vector<std::uint64_t> evaluated_;  ///< by subprogram: version of the box for which its outer steps were run
+    std::vector<std::uint64_t> versions_;   ///< for each register, the version of the inputs for which it was computed
+    std::vector<std::uint64_t> evaluated_;  ///< for each subprogram, the version of the box for which its outer steps
+                                            ///< were run
     std::uint64_t version_ = 0, box_version_ = 0, last_version_ = 0;
     Interval last_side_;  ///< side of the box along the last axis
   };
@@ -82,7 +83,7 @@ class Constraints {
   Subprogram extract(const expression::Program& program, std::size_t first_output, std::size_t count);
 
   std::vector<std::size_t> axes_;
-  /// By axis: the register of its input; std::nullopt: no constraint depends on the axis.
+  /// For each axis, the register of its input; std::nullopt: no constraint depends on the axis.
   std::vector<std::optional<std::uint32_t>> registers_;
   std::vector<Constraint> all_;
   Scratch initial_;

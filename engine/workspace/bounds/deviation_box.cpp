@@ -16,7 +16,7 @@ using AxisSides = std::vector<Interval>;
 using Gradient = ParametricConstraints::Gradient;
 
 struct SearchBox {
-  AxisSides sides;                  ///< sides along the coordinates, then along the deviations
+  AxisSides sides;  ///< intervals of the coordinates of the pose, then of the deviations of the parameters
   std::vector<std::uint32_t> open;  ///< indices of the undecided constraints
   double scale = 0;                 ///< no point of the box with all |d_i| <= scale violates a constraint
   std::uint64_t number = 0;         ///< number of the box in the order of creation
@@ -26,7 +26,8 @@ struct SearchBox {
   std::optional<Violation> violation;
 };
 
-/// Order of the boxes in a heap: that with the lowest scale first; of equal ones, that created first.
+/// Order of the boxes in a heap: the box with the lowest scale comes first; among boxes with equal scales, the one that
+/// was created first.
 struct IsExaminedLater {
   bool operator()(const SearchBox& a, const SearchBox& b) const {
     return a.scale != b.scale ? a.scale > b.scale : a.number > b.number;
@@ -104,7 +105,8 @@ class DeviationBranchAndBound {
     box.is_decided = box.scale >= target;
     if (box.is_decided) return;
     std::vector<std::uint32_t> open;
-    std::vector<double> priority(axes);  // by axis; the axis with the maximum priority is bisected
+    // For each axis, its priority for bisection; the axis with the maximum priority is bisected.
+    std::vector<double> priority(axes);
     double scale = target;
     for (const std::uint32_t k : box.open) {
       Gradient& g = worker.gradient;
@@ -188,8 +190,8 @@ class DeviationBranchAndBound {
     keep(search_.along(k, std::span(vertex).first(poses), direction, scale, known(), worker.scratch));
   }
 
-  /// Adds to the priority of each axis its share of the uncertainty of constraint k. The share is that in the width of
-  /// the mean value form or, if derivatives are unknown, in the width of the value along the axis.
+  /// Adds to the priority of each axis its share of the uncertainty of constraint k. The uncertainty is the width of
+  /// the mean value form or, if derivatives are unknown, the width of the constraint's value along the single axis.
   void add_priority(std::size_t k, const AxisSides& sides, std::vector<double>& priority, Worker& worker) const {
     std::vector<double> own(sides.size());
     if (worker.gradient.is_known) {
@@ -205,8 +207,8 @@ class DeviationBranchAndBound {
         worker.point[i] = middle;
       }
     }
-    // If a share is unbounded, only the axes with unbounded shares count, in proportion to their sides relative to the
-    // whole range.
+    // If a share is unbounded, only the axes with unbounded shares count, in proportion to the lengths of the box's
+    // sides relative to the whole range.
     const bool bounded = std::ranges::all_of(own, [](double x) { return std::isfinite(x); });
     double sum = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {

@@ -16,7 +16,7 @@ void ParametricConstraints::add(Graph graph, const std::vector<ParametricConstra
   graph = expression::without_numbers(
       graph, inputs.size(), [](std::size_t) { return Groups{1}; }, numbers, roots);
   inputs.insert(inputs.end(), numbers.begin(), numbers.end());
-  std::vector<std::vector<Node>> outputs;  // by constraint: nodes of its value and of its derivatives
+  std::vector<std::vector<Node>> outputs;  // for each constraint, the nodes of its value and of its derivatives
   for (const Node root : roots) outputs.push_back({root});
   for (const std::size_t axis : axes) {
     Rates rates(graph);

@@ -13,10 +13,11 @@ namespace pkm::bounds {
 struct ParametricConstraint {
   std::string name;
   expression::Node node;
-  bool is_strict = false;  ///< true: g > 0 is required
+  bool is_strict = false;  ///< true: the constraint is g > 0; false: g >= 0
 };
 
-/// Immutable after add(), and thread-safe.
+/// Constraints g >= 0 or g > 0 over poses and further variables. Immutable after the last call of add(), and then
+/// thread-safe.
 class ParametricConstraints {
  public:
   struct Gradient {
@@ -24,7 +25,7 @@ class ParametricConstraints {
     std::vector<Interval> by_axis;
     bool is_known = false;  ///< the constraint is continuous, and all partial derivatives are enclosed
   };
-  /// Memory of one worker.
+  /// Scratch memory of one worker thread.
   struct Scratch {
     std::vector<std::vector<Interval>> inputs;  ///< values of all inputs of each graph, as intervals
     std::vector<std::vector<double>> numbers;   ///< values of all inputs of each graph, in double precision

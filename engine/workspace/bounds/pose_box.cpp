@@ -58,7 +58,7 @@ std::optional<AxisMatrix<double>> midpoint_matrix(std::span<const Interval> entr
 bool has_full_rank(std::span<const Interval> entries, std::size_t rows, std::size_t columns) {
   const auto midpoint = midpoint_matrix(entries, rows, columns);
   if (!midpoint || is_rank_deficient(*midpoint)) return false;
-  // An approximate left inverse is sufficient: if its product with A has full rank, then A has full column rank.
+  // An approximate left inverse of A is sufficient: if its product with A has full rank, then A has full column rank.
   const AxisMatrix<double> inverse = rows == columns ? solve(*midpoint, AxisMatrix<double>::identity(rows))
                                                      : solve(transpose(*midpoint) * *midpoint, transpose(*midpoint));
   // Comparison matrix of the product: minimum of the diagonal elements, minus the maximum magnitude of the others.
@@ -127,7 +127,7 @@ bool Matrices::is_singular_at(std::size_t k, const IntervalBox& pose, Scratch& s
   const auto midpoint = midpoint_matrix(A, rows, columns);
   if (!midpoint) return false;
   Eigen::MatrixXd matrix(rows, columns);
-  double norm = 0;  // maximum row sum
+  double norm = 0;  // maximum over the rows of the sum of magnitudes
   for (std::size_t i = 0; i < rows; ++i) {
     double sum = 0;
     for (std::size_t j = 0; j < columns; ++j) {
@@ -198,8 +198,8 @@ class PoseBranchAndBound {
     std::vector<Box> boxes = {all};
     while (!boxes.empty()) {
       parallel_for(boxes.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
-        for (std::size_t i = begin; i < end && !stopped(); ++i)  // also tested within a round, which may take long
-          examine(boxes[i], scratch_[worker]);
+        // The stop request is also tested within a round, which may take long.
+        for (std::size_t i = begin; i < end && !stopped(); ++i) examine(boxes[i], scratch_[worker]);
       });
       found.boxes += boxes.size();
       found.stopped = stopped();
@@ -311,9 +311,9 @@ class PoseBranchAndBound {
     return box;
   }
 
-  /// Decides constraints and matrices on a box, and looks for a counterexample at its sample.
+  /// Decides constraints and matrices on a box, and tests whether its sample is a counterexample.
   void examine(Box& box, Scratch& scratch) const {
-    // by axis: sum over the undecided constraints of their variation along the axis (upper bounds)
+    // For each axis, the sum over the undecided constraints of upper bounds of their variation along the axis.
     std::array<double, kMaxAxes> variation{};
     std::vector<std::size_t> open;
     const Interval sums = sum_of_squares(box.sides);
@@ -388,10 +388,10 @@ class PoseBranchAndBound {
         double least = std::numeric_limits<double>::infinity();
         const auto add_part = [&](double from, double to, double derivative) {
           if (!(from <= to)) return;
-          // encloses a t + b (t + offset)^2 for t in [from, to], by completing the square
+          // Encloses a t + b (t + offset)^2 for t in [from, to], by completing the square.
           const Interval a(derivative), t(from, to), vertex = a / (two * b);
           const double bound = (b * square(t + offset + vertex) - a * offset - a * vertex / two).lower;
-          // if the bound is NaN, `least` becomes NaN
+          // If the bound is NaN, `least` becomes NaN.
           least = bound > -std::numeric_limits<double>::infinity() ? std::min(least, bound) : bound;
         };
         add_part(change.lower, std::fmin(change.upper, 0), derivatives.by_axis[axis].upper);
@@ -430,7 +430,7 @@ class PoseBranchAndBound {
     std::size_t best = 0;
     for (std::size_t axis = 0; axis < ranges_.size(); ++axis) {
       if (8 * share(axis) < longest)
-        // excludes axes along which the box is short, so that its aspect ratio is bounded
+        // Skip axes along which the box is short, so that its aspect ratio is bounded.
         continue;
       const double priority =
           std::isfinite(variation[axis]) && !box.open.empty() ? variation[axis] + 1e-300 * share(axis) : share(axis);
@@ -470,7 +470,7 @@ class PoseBranchAndBound {
     int searches = 0;  ///< number of bracket_root() calls
   };
   static constexpr int kMaxSearches = 100;  // limited, because a determinant also changes its sign at poles
-  std::vector<Bracket> brackets_;           ///< one element per matrix
+  std::vector<Bracket> brackets_;           ///< one element for each matrix whose determinant is examined
   std::optional<Singularity> singularity_;
 };
 

@@ -29,7 +29,7 @@ struct NamedMatrix {
   std::vector<expression::Node> entries;  ///< row by row
 };
 
-/// Immutable and thread-safe.
+/// Matrices of formulas, compiled to an interval program. Immutable and thread-safe.
 class Matrices {
  public:
   /// Inputs of the graph, and registers of the program.
@@ -54,7 +54,8 @@ class Matrices {
 
  private:
   void evaluate(const IntervalBox& box, Scratch& scratch) const;
-  std::vector<Interval> entries(std::size_t k, const Scratch& scratch) const;  ///< row by row, after evaluate()
+  std::vector<Interval> entries(std::size_t k, const Scratch& scratch) const;  ///< entries of matrix k, row by row; to
+                                                                               ///< be called after evaluate()
 
   std::vector<NamedMatrix> matrices_;
   std::vector<std::size_t> axes_;

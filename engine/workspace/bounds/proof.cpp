@@ -55,7 +55,7 @@ class Formulas {
       names_[node] = name;
     } else {
       // For readability, a short formula that is used once is inserted where it is used.
-      constexpr std::size_t kMaxInserted = 120;  // characters
+      constexpr std::size_t kMaxInserted = 120;  // maximum length of an inserted formula in characters
       const std::string text = formula(entry);
       if (uses_[node] == 1 && text.size() <= kMaxInserted && !named_.contains(node))
         names_[node] = text;

@@ -13,10 +13,10 @@ namespace pkm::bounds {
 struct Statement {
   const expression::Graph& graph;
   const Constraints& constraints;        ///< constraints on the graph's inputs
-  std::vector<std::string> axes;         ///< names, the column coordinate last
-  std::vector<std::size_t> positions;    ///< by axis: index among the graph's inputs
+  std::vector<std::string> axes;         ///< names of the axes, the column coordinate last
+  std::vector<std::size_t> positions;    ///< for each axis, its index among the graph's inputs
   Ranges ranges;                         ///< range of each axis
-  std::vector<Interval> inputs;          ///< all inputs of the graph
+  std::vector<Interval> inputs;          ///< values of all inputs of the graph
   std::vector<std::string> input_names;  ///< names of the graph's inputs, for readers of the proof; may be ""
   std::string title;
 };

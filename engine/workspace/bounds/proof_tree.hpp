@@ -25,7 +25,7 @@ class ProofTree {
  private:
   struct Node {
     std::string text;
-    std::size_t axis = 0, first_child = 0;  ///< first_child = 0: a leaf
+    std::size_t axis = 0, first_child = 0;  ///< first_child = 0: the node is a leaf, i.e. its box is not divided
   };
   std::vector<Node> nodes_;
 };

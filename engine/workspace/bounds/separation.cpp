@@ -155,7 +155,8 @@ class BranchAndPrune {
       else if (contains(i, &SeparationAxis::to))
         separated = false;
     }
-    for (std::size_t i = parts_.size(); i-- > 0;)  // halves have higher indices
+    // From the last part to the first, because halves have higher indices than the parts they belong to.
+    for (std::size_t i = parts_.size(); i-- > 0;)
       if (const std::size_t lower = parts_[i].child; lower != 0)
         parts_[i].is_removed = parts_[lower].is_removed && parts_[lower + 1].is_removed;
     return separated;
@@ -200,7 +201,7 @@ class BranchAndPrune {
   const BoundsOptions& options_;
   std::vector<Scratch> scratch_;  ///< scratch memory of each worker thread
   std::vector<int> signs_;        ///< for each matrix, the sign of its determinant at the first pose
-  std::vector<Part> parts_;       ///< the tree; the first one is the whole box
+  std::vector<Part> parts_;       ///< the tree of parts; the first part is the whole box
   DisjointSets sets_;             ///< sets of connected parts, by index of the part
 };
 

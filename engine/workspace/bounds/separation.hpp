@@ -18,8 +18,8 @@ namespace pkm::bounds {
 
 struct SeparationAxis {
   std::array<double, 2> range;
-  double from, to;   ///< values of the two poses
-  bool is_periodic;  ///< the range is a full turn: its two ends are the same poses
+  double from, to;   ///< values of the coordinate at the first and at the second pose
+  bool is_periodic;  ///< true: the range is a full revolution, so that its two ends are the same pose
 };
 
 /// @param matrices  square matrices whose determinants may not vanish along a path; null: none

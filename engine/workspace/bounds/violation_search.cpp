@@ -16,7 +16,7 @@ constexpr std::size_t kStarts = 16;     // number of pattern searches, in additi
 constexpr double kFinalStep = 1e-4;  // step at which a pattern search ends, relative to the ranges of the coordinates
 constexpr double kScaleAccuracy = 1e-7;     // relative accuracy of the scale of a violation along a ray
 constexpr double kGradientDistance = 1e-3;  // relative distance from a violation at which its gradient is computed
-// violations whose first-order scale exceeds the limit by this factor are ignored
+// Violations are ignored if their first-order scale exceeds the limit by more than this factor.
 constexpr double kSearchedBeyondLimit = 1.5;
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -89,7 +89,7 @@ std::optional<Violation> ViolationSearch::at_pose(std::size_t k, std::span<const
   if (!(scale < kSearchedBeyondLimit * limit)) return {};
   std::optional<Violation> best;
   std::vector<double> s = worst_corner(std::span(gradient).subspan(pose.size()));
-  // repeated, because the gradient at the violation may indicate another vertex
+  // This is repeated, because the gradient at the violation may indicate another vertex.
   for (int corner = 0; corner < 3; ++corner) {
     const auto found = along(k, pose, s, scale, best ? best->scale : limit, scratch);
     if (!found) break;
@@ -133,7 +133,7 @@ std::vector<double> ViolationSearch::minimise(std::size_t k, std::vector<double>
 }
 
 std::optional<Violation> ViolationSearch::search(double limit, const std::function<bool()>& stop) const {
-  // the samples are a regular grid that includes the ends of all ranges
+  // The samples are a regular grid that includes the ends of all ranges.
   std::size_t levels = 3, count = 1, free = 0;
   for (const auto& range : ranges_) free += range[0] < range[1];
   if (free > 0)
@@ -160,7 +160,8 @@ std::optional<Violation> ViolationSearch::search(double limit, const std::functi
     for (std::size_t i = begin; i < end && !stop(); ++i)
       for (std::size_t k = 0; k < all; ++k) scales[i * all + k] = first_order(k, sample(i), gradient, scratch[worker]);
   });
-  // start from the best sample of each constraint, and from the kStarts best samples of all constraints
+  // The pattern searches start from the best sample of each constraint, and from the kStarts best samples of all
+  // constraints.
   std::vector<std::size_t> order(scales.size()), starts;
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(order, {}, [&](std::size_t i) { return std::tuple(scales[i], i); });

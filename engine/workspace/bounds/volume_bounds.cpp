@@ -67,7 +67,7 @@ class BranchAndBound {
  private:
   struct Leaf {
     ColumnBox box;
-    std::size_t node = 0;  ///< index in the tree
+    std::size_t node = 0;  ///< index of the leaf's node in the proof tree
   };
 
   /// Enclosure of the volume over a leaf, in an array of its own because all of them are read after each round.
@@ -112,7 +112,8 @@ class BranchAndBound {
 
   void prune(std::size_t i, ColumnPruner::Scratch& scratch) {
     Leaf& leaf = leaves_[i];
-    const bool skipped = options_.stop && options_.stop();  // also tested within a round, which may take long
+    // The stop request is also tested within a round, which may take long.
+    const bool skipped = options_.stop && options_.stop();
     std::vector<Step> steps;
     pruner_.prune(leaf.box, scratch, tree_ ? &steps : nullptr, skipped);
     if (tree_) tree_->record(leaf.node, steps);
@@ -129,7 +130,7 @@ class BranchAndBound {
   ColumnPruner pruner_;
   std::vector<ColumnPruner::Scratch> scratch_;  ///< scratch memory of each worker thread
   std::vector<Leaf> leaves_;
-  std::vector<Enclosure> enclosures_;                  ///< by leaf
+  std::vector<Enclosure> enclosures_;                  ///< for each leaf, the enclosure of its volume
   std::vector<std::pair<double, std::size_t>> order_;  ///< pairs (-width of the enclosure, index of the leaf), sorted
 };
 

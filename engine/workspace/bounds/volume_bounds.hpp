@@ -9,7 +9,7 @@ namespace pkm::bounds {
 
 using Ranges = std::array<std::array<double, 2>, kMaxOuterAxes + 1>;
 
-/// Bounds of the volume in which all constraints are satisfied. Bit-identical for any number of threads.
+/// Bounds of the volume in which all constraints are satisfied. The result is bit-identical for any number of threads.
 /// @param ranges  range of each axis of the constraints, the column coordinate last
 /// @param tree    receives the proof; null: not requested
 VolumeBounds volume_bounds(const Constraints& constraints, const Ranges& ranges, const BoundsOptions& options,
