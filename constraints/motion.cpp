@@ -65,7 +65,7 @@ class MinimumAlong final : public Quantity {
   }
 
   SampledMotion motion_;
-  MarginPoses along_;  ///< without poses if the motion depends on the design
+  MarginPoses along_;  ///< the poses along the motion; empty if the motion depends on the design
   double sharpness_;
   bool depends_on_design_ = false;
   Unsupported why_no_derivatives_;

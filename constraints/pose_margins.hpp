@@ -58,7 +58,7 @@ inline std::string unit_of_minimum(const EntryContext& context) {
   return margins && !margins->margin_unit().empty() ? margins->margin_unit() : std::string("1");
 }
 
-/// Empty if the minimum has derivatives; otherwise the reason why not.
+/// The reason why the minimum has no derivatives; empty if it has.
 inline Unsupported no_margin_derivatives(const Mechanism& mechanism, const LimitSpec& limits,
                                          const std::string& constraint) {
   if (mechanism.pose_margins()) return mechanism.pose_margins()->why_no_derivatives(limits);

@@ -32,7 +32,7 @@ class LargestSolidMeasure final : public Quantity {
     if (!(found.volume > 0)) return Dual4(0.0);
     const Dual4 volume = finder_.volume(design.parameters, found);
     if (!is_size_) return volume;
-    // With fixed proportions the volume is proportional to size^axes.
+    // If the proportions are fixed, the volume is proportional to size^n, where n is the number of axes.
     Dual4 size(found.solid.dimensions.front());
     const double factor = size.a / (static_cast<double>(finder_.spec().shape.axes()) * volume.a);
     for (int k = 0; k < 4; ++k) size.v[k] = factor * volume.v[k];
@@ -84,7 +84,8 @@ ObjectiveEntry entry_of(SolidKind kind, const std::string& name, const std::stri
                    " in the workspace";
           },
       .range = nonnegative,
-      .needs_workspace = [](const EntryContext&) { return false; },  // it evaluates voxels of its own
+      // The objective performs a voxel analysis of its own.
+      .needs_workspace = [](const EntryContext&) { return false; },
   };
 }
 

@@ -31,7 +31,7 @@ std::string axes_text(const Axes& axes, std::span<const double> values);
 std::string large_angle_note(const Axes& axes, std::span<const double> values);
 /// JSON object {name: value, ...} with a value for each axis; null if there are no values.
 Json axes_json(const Axes& axes, const std::optional<AxisVector<double>>& values);
-/// JSON array of the numbers.
+/// JSON array of numbers.
 inline Json vector_json(std::span<const double> values) { return std::vector<double>(values.begin(), values.end()); }
 /// JSON array of the rows of a matrix; null if there is no matrix.
 Json matrix_json(const std::optional<AxisMatrix<double>>& matrix);

@@ -23,7 +23,7 @@ Json mechanism_json(const Mechanism& mechanism, const Catalogues& catalogues);
 /// one object per entry, which contains `name`, `meaning`, the options and further data of the entry.
 Json catalogues_json(const Catalogues& catalogues);
 
-// The following functions write the JSON of mechanism_json() and catalogues_json() in readable form.
+// The following functions convert the JSON of mechanism_json() and catalogues_json() to text that people can read.
 /// Full description of one entry: one line for each single value, one table for each list.
 std::string entry_text(const Json& entry);
 /// All entries of all catalogues in Markdown: the content of experiments/catalogue.md.

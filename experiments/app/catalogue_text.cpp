@@ -41,7 +41,8 @@ std::string sweep_summary(const Json& sweeps) {
 /// _max".
 Json with_joined_statistics(const Json& names, const Json& quantities) {
   Json joined = Json::array();
-  const std::string* last = nullptr;  // quantity to which the last entry belongs; null if it belongs to none
+  // Quantity to which the last entry belongs; null if the entry is not a statistic of a quantity.
+  const std::string* last = nullptr;
   for (const Json& entry : names) {
     const std::string& name = entry["name"].get_ref<const std::string&>();
     const std::size_t end = name.rfind('_');

@@ -60,7 +60,8 @@ PoseSolid solid_of(const Target& target, const WorkspacePlan& plan, const std::s
   for (const int coordinate : sweep.fixed)
     solid.ranges[static_cast<std::size_t>(coordinate)].fill(
         fixed_value(*target.mechanism, target.parameters, plan, coordinate));
-  // "x=0,y=0,z=-0.4:-0.2,diameter=0.6": a cylinder extends along the coordinate with a range.
+  // The list is, for example, "x=0,y=0,z=-0.4:-0.2,diameter=0.6": a cylinder extends along the coordinate that has a
+  // range.
   std::vector<std::string> ranges, numbers;
   for (const std::string& item : list_items(lists))
     (item.find(':') == std::string::npos && item.find("..") == std::string::npos ? numbers : ranges).push_back(item);

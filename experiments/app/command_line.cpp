@@ -94,7 +94,7 @@ std::int64_t parse_option(const std::string& text, const std::string& option, st
 void parse_command_line(CLI::App& app, const std::vector<std::string>& arguments) {
   check_subcommand(app, arguments);
   auto expanded = expand_lists(arguments);
-  std::ranges::reverse(expanded);  // CLI11 expects them in reverse order
+  std::ranges::reverse(expanded);  // CLI11 requires the arguments in reverse order
   try {
     app.parse(expanded);
   } catch (const CLI::CallForHelp&) {

@@ -65,7 +65,7 @@ CLI::Option* add_option(CLI::App& command, const std::string& words, Value& valu
 std::int64_t parse_option(const std::string& text, const std::string& option, std::int64_t lower, std::int64_t upper);
 
 /// Declares an option whose value is an integer in [lower, upper].
-/// @param value  receives it: an integer or an optional integer
+/// @param value  receives the value: an integer or an optional integer
 template <class Integer>
 CLI::Option* add_integer(CLI::App& command, const std::string& words, Integer& value, std::int64_t lower,
                          std::int64_t upper, const std::string& meaning) {

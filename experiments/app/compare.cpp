@@ -65,7 +65,7 @@ std::vector<Row> rows_of_reasons(const Robots& robots) {
   for (std::size_t k = 0; k < robots.front().values.size(); ++k) {
     const std::string &name = robots.front().values[k].name, &group = robots.front().values[k].group;
     ++size_of_group[group];
-    std::vector<std::pair<std::string, std::vector<std::string>>> found;  // reasons with the robots
+    std::vector<std::pair<std::string, std::vector<std::string>>> found;  // reason, and names of its robots
     for (const ComparedRobot& robot : robots) {
       const std::string& reason = robot.values[k].reason;
       if (reason.empty()) continue;
@@ -145,7 +145,8 @@ void compare(const CompareArguments& arguments, const Session& session, Printout
   inputs.push_back(arguments.task);
   const Existing existing = if_forced(arguments.force);
   check_outputs(files, inputs, existing);
-  if (!arguments.html.empty()) page_assets();  // throws here, before any evaluation, if this build lacks the page
+  if (!arguments.html.empty())
+    page_assets();  // throws std::runtime_error here, before any evaluation, if this build does not contain the page
   with_team(arguments.threads, [&] {
     const TaskComparison comparison = compare_in_task(task, robots, session.catalogues);
     out.add("task", task.name);

@@ -13,7 +13,7 @@ namespace {
 /// What an option or an argument accepts: words, files, or both.
 struct PossibleValues {
   std::vector<std::string> words;
-  std::string extension;  ///< extension of the files, for example "h5"; "*": any file; "": no files
+  std::string extension;  ///< extension of the files, for example "h5"; "*": files with any name; "": no files
 };
 
 PossibleValues values_of(const std::string& command, const std::string& type, const Session& session) {

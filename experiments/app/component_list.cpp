@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-constexpr double kMinShare = 1e-3;  ///< share of the feasible cells from which on a component is listed in the text
+constexpr double kMinShare = 1e-3;  ///< minimum share of the feasible cells for a component to be listed in the text
 
 /// Number of components that are large enough to be listed in the text.
 std::size_t large_ones(const ConnectedComponents& components, double feasible) {
@@ -48,7 +48,7 @@ void report_components(const Target& target, const WorkspacePlan& plan, Printout
   WorkspacePlan all = visualisation_plan(info, plan, {1, 1, 1});
   all.home.reset();
   out.json["components"] = nullptr;
-  // No components: with fewer joints than coordinates, every pose is singular.
+  // If there are fewer joints than coordinates, every pose is singular, so that there are no components.
   if (info.joints.size() < info.coordinates.size()) return;
   Axes axes;
   for (const int coordinate : sweep_of(info, all).swept)

@@ -95,7 +95,7 @@ std::string motion_text(const MechanismInfo& info, const std::vector<Pose<double
 
 /// Result for the question whether there is a path between the two poses.
 struct Answer {
-  std::string verdict;  ///< "yes", "no" or "undecided"
+  std::string verdict;  ///< answer to the question: "yes", "no" or "undecided"
   std::string reason;
   std::vector<Pose<double>> points;  ///< points of the path, if one was found
   std::size_t boxes = 0;             ///< number of boxes that interval arithmetic examined

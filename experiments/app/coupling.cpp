@@ -79,7 +79,7 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
   const FieldRequest request{
       .fields = {&kCouplingIndex}, .poses = true, .mode = parse_mode(info, {arguments.mode, ""})};
   const WorkspacePlan plan = plan_of(target, arguments);
-  // Runs an action; a std::invalid_argument that it throws is thrown again as ConfigError.
+  // Runs an action, and converts a std::invalid_argument that it throws into a ConfigError.
   const auto with_config_errors = [&info](const auto& action) {
     try {
       return action();

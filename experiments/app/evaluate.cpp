@@ -133,7 +133,7 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
     if (plan.box() && survey.touches_box)
       rows.push_back({"warning", "the feasible set touches the box: it may extend beyond"});
   } else {
-    // False: the numbers of nodes are fixed, which gives no error estimate.
+    // False if the numbers of nodes are fixed, so that there is no error estimate.
     const bool estimated = plan.columns()->nodes[0] == 0;
     json["columns"] = survey.columns;
     const double tolerance = plan.columns()->tolerance;
@@ -190,7 +190,7 @@ std::string feasibility_text(const DesignProblem& problem, const DesignReport& r
 /// target.
 void evaluate_table(const DesignProblem& problem, const Target& target, const EvaluateArguments& arguments,
                     const std::string& program, Printout& out) {
-  // Their ranges are not used, so that a design outside of them fails instead of being refused.
+  // The ranges of the parameters are not used, so that a design outside of them fails instead of being refused.
   std::vector<Assignable> parameters;
   for (const Parameter& p : target.info().parameters) parameters.push_back({p.name, p.unit});
   const CsvColumns given = read_table(arguments.designs, parameters, false, program);

@@ -20,7 +20,7 @@ struct ForwardArguments : DesignArguments {
   bool moves() const { return !(speeds.empty() && accelerations.empty()); }
 };
 
-/// First and second derivative with respect to time, of the joints or of the platform coordinates.
+/// First and second time derivatives of the joint positions or of the platform coordinates.
 using Rates = std::array<AxisVector<double>, 2>;
 
 /// Parses --speeds and --accelerations. Throws ConfigError if the mechanism cannot convert them to platform rates.
@@ -39,7 +39,7 @@ Rates joint_rates(const Mechanism& mechanism, const ForwardArguments& arguments)
   return {rates(arguments.speeds, "--speeds", "s"), rates(arguments.accelerations, "--accelerations", "s^2")};
 }
 
-/// Velocity and acceleration of the platform coordinates in an assembly mode; std::nullopt if it is singular.
+/// Velocity and acceleration of the platform coordinates in an assembly mode; std::nullopt if the pose is singular.
 std::optional<Rates> platform_rates(const Target& target, const AssemblyMode& assembly, const Rates& joints) {
   const auto& modes = target.info().modes;
   const std::string mode = assembly.working_mode.empty() ? modes.front() : assembly.working_mode;

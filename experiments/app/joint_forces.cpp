@@ -14,8 +14,8 @@ Json components_json(const std::array<std::optional<double>, 3>& components) {
   return list_json(components, json_or_null<double>);
 }
 
-/// Adds the magnitude of a force or couple along a motion to the output: three cells of the joint's row, four keys of
-/// its JSON object.
+/// Adds the magnitude of a force or couple along a motion to the output: three cells of the joint's table row, and four
+/// keys of the joint's JSON object.
 void add_load(const std::string& key, const LoadSummary& load, const Trajectory& trajectory, Row& row, Json& json) {
   std::vector<std::string> undetermined;  // names of the components that are not determined
   for (std::size_t k = 0; k < 3; ++k)

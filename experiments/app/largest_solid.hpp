@@ -18,12 +18,12 @@ struct SolidArguments {
   std::vector<std::string> centre, least;
   bool singular = false;
 };
-/// Declares the options.
+/// Declares --largest-box, --largest-cylinder, --largest-sphere and their further options.
 void add_solid_options(CLI::App& command, SolidArguments& arguments);
 
 /// A solid that is requested.
 struct RequestedSolid {
-  std::string name;  ///< "box"
+  std::string name;  ///< word for the solid in messages, such as "box"
   std::unique_ptr<const LargestSolidFinder> finder;
 };
 /// The requested solids, ready to be found under a plan with voxels. Throws ConfigError if the options do not fit it.

@@ -10,7 +10,7 @@
 
 namespace pkm {
 
-/// Names of the files to be written; "": not requested.
+/// Names of the files to be written; "" for a file that is not requested.
 struct LinkFiles {
   std::string stl, dxf, vtk;
   ModelFiles model;

@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-/// Names of the files to be written; "": not requested.
+/// Names of the files to be written; "" for a file that is not requested.
 struct ModelFiles {
   std::string urdf, sdf, mjcf;
 

@@ -25,8 +25,8 @@ DisplayUnit display_unit(const std::string& si_unit) {
 }
 
 void print_json(const Json& json) {
-  // Names and file names may contain bytes that are not UTF-8, which JSON forbids: they are replaced. If strings
-  // contain control characters that JSON permits, all characters outside ASCII are escaped.
+  // Names and file names may contain bytes that are not UTF-8, which JSON forbids and which are therefore replaced. If
+  // strings contain control characters that JSON permits, all characters outside ASCII are escaped.
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
   const bool plain = printable(text, "\n") == text;
   std::cout << (plain ? text : json.dump(2, ' ', true, Json::error_handler_t::replace)) << '\n';

@@ -41,7 +41,8 @@ constexpr std::size_t kMaxProgramName = 40;  // maximum number of bytes of the p
 struct Command {
   std::string_view name;
   AddCommand* add;
-  bool evaluates = false;  ///< true if it evaluates many designs, so that the instruction set influences its run time
+  bool evaluates = false;  ///< true if the command evaluates many designs, so that the instruction set influences its
+                           ///< run time
 };
 
 constexpr Command kCommands[] = {{"run", add_run, true},
@@ -144,8 +145,8 @@ Catalogues all_catalogues() { return {all_mechanisms(), all_objectives(), all_co
 
 int program_main(int argc, char** argv, const Catalogues& catalogues) {
   if (argc == 2 && std::string_view(argv[1]) == kCheckFile) return check_study_on_standard_input();
-  // This is not done within another program, such as a test or a fuzzer: its executable does not understand kCheckFile
-  // and would just run again.
+  // The check command is not set within another program, such as a test or a fuzzer: its executable does not understand
+  // kCheckFile and would just run again.
   if (argc > 0 && argv[0] == program_invocation_name) set_check_command({"/proc/self/exe", kCheckFile});
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).stem().string() : "";
   std::string words;
@@ -176,7 +177,7 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
       return report_error(std::string("stopped by ") + StopRequest::name(StopRequest::signal()), kStoppedEarly);
     }
   };
-  std::signal(SIGXFSZ, SIG_IGN);  // then exceeding the file size limit is an error that can be reported
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error that can be reported
   try {
     const ranks::Group group;
     if (ranks::rank() > 0) return run_worker_rank(catalogues, {program_version(), program_revision(), words});

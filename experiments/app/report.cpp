@@ -39,7 +39,7 @@ void report(const ReportArguments& arguments, const Session& session) {
   for (const std::string& file : arguments.files) expect_study_file(file, "run", session);
   const std::string output =
       arguments.output.empty() ? std::filesystem::path(arguments.files[0]).stem().string() + ".html" : arguments.output;
-  page_assets();  // throws here, before any evaluation, if this build does not contain the page
+  page_assets();  // throws std::runtime_error here, before any evaluation, if this build does not contain the page
   std::vector<PageStudy> studies;
   for (const std::string& file : arguments.files) studies.push_back(page_study(file, session));
   std::vector<std::string> inputs = arguments.files;

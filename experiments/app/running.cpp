@@ -92,7 +92,7 @@ void print_run_end(const RunEnd& end, const Study& study, const std::string& fil
   const auto diagnosis = diagnose(outcome.contents, study.problem.get());
   if (!arguments.quiet || end.write_error) std::cout << summary_text(outcome.contents, study, diagnosis);
   if (!outcome.stopped.empty()) {
-    // This is printed even with --quiet, because the results are not final.
+    // The following lines are printed even with --quiet, because the results are not final.
     std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations() << " evaluations";
     if (!end.write_error) std::cout << "; resume with: " << command_text(session, {"resume", file_argument(file)});
     std::cout << '\n';

@@ -46,7 +46,7 @@ std::vector<double> tolerances(const MechanismInfo& info, const std::vector<std:
     for (const Parameter& p : info.parameters)
       each.push_back(p.unit == "m" ? length.value_or(0) : p.unit == "rad" && !length ? *angle : 0);
   } else {
-    // names, units and ranges of the tolerances; a tolerance is not subject to the bounds of its parameter
+    // Names, units and ranges of the tolerances. A tolerance is not restricted to the bounds of its parameter.
     std::vector<Assignable> known;
     for (const Parameter& p : info.parameters) known.push_back({p.name, p.unit});
     each = parse_some_assignments(lists, place.key, known);
@@ -56,7 +56,8 @@ std::vector<double> tolerances(const MechanismInfo& info, const std::vector<std:
   return each;
 }
 
-constexpr double kNegligible = 1e-9;  // contributions below, relative to the largest, are rounding errors
+// Contributions that are smaller, relative to the largest one, are rounding errors.
+constexpr double kNegligible = 1e-9;
 
 /// Reports the contributions of the tolerances to the change of each quantity, the largest first.
 void report_contributions(const std::vector<Parameter>& parameters, const std::vector<QuantityGradient>& gradients,
@@ -88,7 +89,7 @@ void report_contributions(const std::vector<Parameter>& parameters, const std::v
 }
 
 /// Reports the worst case of each quantity for parameters within +- their tolerances: to first order, and evaluated at
-/// the corner of the tolerance box that is the worst to first order; and the root of the sum of squared contributions.
+/// the vertex of the tolerance box that is worst to first order; and the root of the sum of squared contributions.
 void report_worst_cases(const DesignProblem& problem, const DesignReport& report,
                         const std::vector<QuantityGradient>& gradients, const std::vector<double>& each,
                         Printout& out) {

@@ -23,7 +23,7 @@ Slices set_fixed_coordinates(WorkspacePlan& plan, const MechanismInfo& info, con
 void add_cuts(Slices& slices, const WorkspacePlan& plan, const MechanismInfo& info,
               const std::vector<std::string>& lists);
 
-/// Those swept coordinates of the plan that are not sliced.
+/// The swept coordinates of the plan that are not sliced.
 Axes swept_axes(const WorkspacePlan& plan, const MechanismInfo& info, const Slices& slices);
 
 /// Reduces the range of each sliced coordinate to one thin cell. If no box is specified, it encloses the reachable

@@ -24,7 +24,8 @@ const std::vector<std::string> kComponents = {"x", "y", "z", "about x", "about y
 /// Eigenvalues of a symmetric matrix, in ascending order.
 VectorXd eigenvalues(const MatrixXd& A) { return Eigen::SelfAdjointEigenSolver<MatrixXd>(A).eigenvalues(); }
 
-/// Compliance matrix C of the platform. Its basis are the columns of S: the wrenches that the mechanism can balance.
+/// Compliance matrix C of the platform. Its basis vectors are the columns of S: the wrenches that the mechanism can
+/// balance.
 struct Elastic {
   MatrixXd S, C;
 
@@ -67,7 +68,7 @@ std::vector<double> natural_frequencies(const Target& target, const std::string&
   const MotionState<double> at_rest{pose, AxisVector<double>(pose.size())};
   PoseDynamics<double> found;
   dynamics->equations(std::span<const double>(target.parameters), mode, {&at_rest, 1}, {&found, 1});
-  // The wrenches that correspond to unit generalised forces. The mechanism must be able to balance all of them.
+  // Compute the wrenches that correspond to unit generalised forces; the mechanism must be able to balance all of them.
   const MatrixXd wrenches = T.completeOrthogonalDecomposition().pseudoInverse().transpose(),
                  carried = elastic.S.transpose() * wrenches;
   if ((elastic.S * carried - wrenches).norm() > 1e-9 * wrenches.norm()) return {};
@@ -76,7 +77,7 @@ std::vector<double> natural_frequencies(const Target& target, const std::string&
   // The eigenvalues of L^T C_x L are 1 / omega^2, because free vibrations satisfy C_x M x'' + x = 0.
   const MatrixXd L = inertia.matrixL(), C_x = carried.transpose() * elastic.C * carried;
   const VectorXd squares = eigenvalues(L.transpose() * C_x * L);
-  constexpr double kRigid = 1e-13;  // smaller eigenvalues, relative to the largest one, are rounding errors
+  constexpr double kRigid = 1e-13;  // eigenvalues that are smaller, relative to the largest one, are rounding errors
   std::vector<double> frequencies;
   for (const double square : squares)
     if (square > kRigid * squares[squares.size() - 1])

@@ -98,7 +98,7 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   for (std::size_t i = 0; i < contents.stages.size(); ++i) {
     const StageRecord& stage = contents.stages[i];
     out << "stage " << i + 1 << ": " << stage.optimiser << ", ";
-    const bool has_starts =  // true also if the stage was interrupted before its first start had ended
+    const bool has_starts =  // true even if the stage was interrupted before its first start ended
         !stage.starts.empty() ||
         (i < study.stages.size() && study.stages[i].entry->capabilities(study.stages[i].options).starts);
     if (!has_starts)

@@ -7,7 +7,8 @@
 
 namespace pkm {
 
-/// The arguments must outlive the report.
+/// Writes the results of `pkmopt tolerances` as text and JSON. The arguments of the constructor must outlive the
+/// object.
 class ToleranceReport {
  public:
   ToleranceReport(const Target& target, const generic::ToleranceProportions& proportions,

@@ -31,12 +31,12 @@ struct TolerancesArguments : DesignArguments, ModeArguments, TableOutput {
   int threads = 0;
 };
 
-/// An entry of the list --of: NAME or NAME=SIZE.
+/// An entry of the value of --of: NAME or NAME=SIZE.
 struct Deviation {
   std::string name, size;
 };
 
-/// The entries of lists separated by commas.
+/// Splits the values of --of, which are lists separated by commas, into entries.
 std::vector<Deviation> split_deviations(const std::vector<std::string>& lists) {
   std::vector<Deviation> all;
   for (std::string list : lists) {
@@ -50,7 +50,7 @@ std::vector<Deviation> split_deviations(const std::vector<std::string>& lists) {
   return all;
 }
 
-// default size of the tolerance of a length [m]; only the ratios of the sizes matter
+// Default size of the tolerance of a length [m]; only the ratios of the sizes are relevant.
 constexpr double kDefaultSize = 1e-3;
 
 /// The size [SI] of a parameter's tolerance; the ratios of the tolerances are those of their sizes.

@@ -12,11 +12,12 @@
 namespace pkm {
 namespace {
 
-/// Maps the errors of more joints than coordinates to those of the coordinates, by least squares: (J^T J)^-1 J^T.
+/// The matrix (J^T J)^-1 J^T, which maps errors of the joints to those of the coordinates by least squares if there are
+/// more joints than coordinates.
 AxisMatrix<double> pseudo_inverse(const AxisMatrix<double>& J) { return solve(transpose(J) * J, transpose(J)); }
 
-/// The pose with these joint coordinates, by Newton's method, or the one that fits them best, by the Gauss-Newton
-/// method; std::nullopt if it does not converge.
+/// The pose with these joint coordinates, by Newton's method, or, if there are more joints than coordinates, the pose
+/// that fits them best, by the Gauss-Newton method; std::nullopt if it does not converge.
 std::optional<Pose<double>> pose_of_joints(const Target& target, const std::string& mode, Pose<double> pose,
                                            const AxisVector<double>& joints) {
   constexpr int kMaxSteps = 50;
@@ -34,14 +35,15 @@ std::optional<Pose<double>> pose_of_joints(const Target& target, const std::stri
       pose[i] += change[i];
       size = std::max(size, std::fabs(change[i]));
     }
-    if (!(size < last)) return last < 1e-9 ? std::optional(pose) : std::nullopt;  // rounding errors, or no convergence
+    // Either rounding errors prevent a further decrease, or the iteration does not converge.
+    if (!(size < last)) return last < 1e-9 ? std::optional(pose) : std::nullopt;
     last = size;
   }
   return {};
 }
 
-/// The largest errors of each coordinate and of the position over all corners of the box of joint errors; std::nullopt
-/// if the pose of a corner was not found.
+/// The largest errors of each coordinate and of the position over all vertices of the box of joint errors; std::nullopt
+/// if the pose of a vertex was not found.
 std::optional<std::vector<double>> worst_corner(const Target& target, const std::string& mode, const Pose<double>& pose,
                                                 const AxisMatrix<double>& inverse, const std::vector<double>& errors) {
   const MechanismInfo& info = target.info();

@@ -1,5 +1,5 @@
-// Pose error of the tool caused by joint errors: to first order, x = J^-1 q (of redundant drives by least squares), and
-// exactly at the worst corner.
+// Pose error of the tool caused by joint errors: to first order, x = J^-1 q (for redundant drives by least squares),
+// and exactly at the worst vertex of the box of joint errors.
 #pragma once
 
 #include <string>

@@ -83,7 +83,7 @@ void report_summary(const Mechanism& mechanism, const Trajectory& trajectory, Pr
     }
     add_total("peak_total_power", "peak power", s.peak_total_power, "W");
     add_total("least_total_power", "minimum power", s.min_total_power, "W");
-    // If all energy that is drawn is also returned, the sum is only a rounding error, which is printed as 0.
+    // If all drawn energy is also returned, the sum is only a rounding error, which is printed as 0.
     add_total("energy", "energy " + per, zero_if_rounding_error(s.energy, s.energy_drawn), "J",
               "with regeneration while braking");
     add_total("energy_drawn", "energy drawn " + per, s.energy_drawn, "J", "without regeneration");

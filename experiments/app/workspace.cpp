@@ -209,7 +209,7 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
       json["fields"][field.name]["unavailable"] = *undefined;
       rows.push_back({field.name, "none", "", *undefined});
     }
-    // Fields of mixed units state these in their meaning.
+    // Fields of mixed units state their units in `meaning`.
     const std::string unit = field.unit == "mixed" ? "1" : field.unit;
     if (range && field.name != "feasible")
       rows.push_back({field.name, position(range->least, unit), position(range->greatest, unit), field.meaning});
@@ -224,7 +224,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
   for (const std::string& file : {arguments.svg, arguments.png})
     for (const std::string& picture : arguments.pictures(file)) files.push_back(picture);
   const Existing existing = if_forced(arguments.force);
-  // Throws here, before any evaluation, if this build does not contain the page.
+  // Throws std::runtime_error here, before any evaluation, if this build does not contain the page.
   if (!arguments.html.empty()) page_assets();
   with_team(arguments.threads, [&] {
     WorkspacePlan plan = target.plan();
