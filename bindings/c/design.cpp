@@ -14,7 +14,7 @@ namespace pkm::c {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-/// Number of poses from which a team of threads is worth its start, for cheap and for costly analyses of a pose.
+/// Minimum number of poses for which several threads are used, for cheap and for costly analyses of a pose.
 constexpr std::size_t kManyCheapPoses = 2000, kManyPoses = 64;
 
 std::size_t coordinates_of(const pkmopt_design& design) { return design.mechanism->info().coordinates.size(); }
@@ -49,7 +49,7 @@ void evaluate(const generic::PoseArrays& arrays, const pkmopt_design& design, st
   });
 }
 
-/// Calls work(k) for each pose, in parallel if there are many.
+/// Calls work(k) for each pose, on several threads if there are at least kManyPoses poses.
 template <class Work>
 void for_each_pose(std::size_t count, const pkmopt_options* options, const Work& work) {
   with_options(options, count >= kManyPoses, [&] {
@@ -66,7 +66,8 @@ PoseReport inspect(const pkmopt_design& design, const Pose<double>& pose) {
   return design.mechanism->inspect(design.parameters, pose, design.mode, design.limits);
 }
 
-/// Names of the margins of a pose that assembles; others have the first of them only. Found at the first use.
+/// Names of the margins of a pose at which the mechanism can be assembled; any other pose has only the first of these
+/// margins. The names are determined at the first use.
 const std::vector<std::string>& margin_names(const pkmopt_design& design) {
   constexpr std::size_t kTrials = 10'000;
   std::call_once(design.has_margin_names, [&] {

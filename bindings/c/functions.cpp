@@ -1,4 +1,4 @@
-// Functions of a study that the caller evaluates, or Python processes.
+// Calls the functions of a study in the caller's program or in Python processes.
 #include "bindings/c/handles.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/problem/external_functions.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kReasonBytes = 4096;
 
-/// Calls the functions of the caller.
+/// Calls functions that the caller's program provides.
 class Functions final : public FunctionCaller {
  public:
   explicit Functions(const pkmopt_functions& given) : function_(given.function), user_(given.user) {
@@ -43,7 +43,7 @@ class Functions final : public FunctionCaller {
  private:
   int (*function_)(const char*, const double*, double*, char*, std::size_t, void*);
   void* user_;
-  std::vector<std::pair<std::string, std::string>> functions_;  // calls and hashes
+  std::vector<std::pair<std::string, std::string>> functions_;  // name and hash of each function
 };
 
 }  // namespace

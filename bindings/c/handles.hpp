@@ -1,4 +1,4 @@
-// What the sources of the C interface share: the objects behind its handles, errors, allocated texts and arrays.
+// Parts shared by the sources of the C interface: the objects behind its handles, errors, allocated texts and arrays.
 #pragma once
 
 #include <algorithm>
@@ -64,7 +64,8 @@ inline std::string text_or_empty(const char* text) { return text ? text : ""; }
 /// Throws StorageError if the file exists and is not to be overwritten.
 void refuse_existing(const std::string& file, bool overwrite);
 
-/// Polls pkmopt_options.interrupt on the calling thread. Thread-safe.
+/// Requests a stop if the function pkmopt_options.interrupt returns true. The function is called only on the thread
+/// that constructed the object; is_requested() is thread-safe.
 class Interrupt {
  public:
   explicit Interrupt(const pkmopt_options& options) : options_(options) {}
@@ -74,12 +75,14 @@ class Interrupt {
  private:
   pkmopt_options options_;
   std::thread::id caller_ = std::this_thread::get_id();
-  std::chrono::steady_clock::time_point polled_ = std::chrono::steady_clock::now();  ///< used by the caller only
+  std::chrono::steady_clock::time_point polled_ = std::chrono::steady_clock::now();  ///< time of the last call of the
+                                                                                     ///< function; used by that thread
+                                                                                     ///< only
   std::atomic<bool> requested_ = false;
 };
 
-/// Runs body() with the threads of the options; Stopped ends it after an interrupt.
-/// @param is_parallel  false: on the calling thread alone, which saves the time to start a team
+/// Runs body() with the number of threads in the options. After an interrupt, it ends with the exception Stopped.
+/// @param is_parallel  false: body() runs on the calling thread alone, which saves the time to start a team
 template <class Body>
 void with_options(const pkmopt_options* given, bool is_parallel, const Body& body) {
   const pkmopt_options options = given ? *given : pkmopt_options{};
@@ -92,7 +95,7 @@ void with_options(const pkmopt_options* given, bool is_parallel, const Body& bod
     body();
 }
 
-/// Lines "set NAME=VALUE", "limit NAME=VALUE", "cells NAME=NUMBER".
+/// Parses the changes of a study: lines "set NAME=VALUE", "limit NAME=VALUE" and "cells NAME=NUMBER".
 StudyChanges changes_of(const char* lines);
 std::unique_ptr<pkmopt_study> study_handle(Study study);
 std::shared_ptr<FunctionCaller> functions_of(const pkmopt_functions& given);
@@ -102,7 +105,7 @@ PythonOptions python_options(const pkmopt_python* given);
 
 struct pkmopt_mechanism {
   std::shared_ptr<const pkm::Mechanism> mechanism;
-  std::string text;  ///< of its file
+  std::string text;  ///< text of the mechanism's file
 };
 
 struct pkmopt_design {
@@ -111,7 +114,7 @@ struct pkmopt_design {
   std::string mode;
   std::size_t mode_index = 0;
   pkm::LimitSpec limits;
-  // Compiled at the first use.
+  // The following members are computed at their first use.
   mutable std::once_flag has_joints, has_jacobians, has_margin_names;
   mutable std::vector<std::string> margin_names;
   mutable std::optional<pkm::generic::PoseArrays> joints, jacobians;
@@ -119,7 +122,7 @@ struct pkmopt_design {
 
 struct pkmopt_study {
   pkm::Study study;
-  // Prepared at the first use.
+  // The evaluator of the workspace is prepared at its first use.
   mutable std::once_flag has_workspace;
   mutable std::unique_ptr<const pkm::WorkspaceEvaluator> workspace;
   // Scratch memory of evaluations of single designs.

@@ -1,4 +1,4 @@
-// Mechanisms: built in, from a file, from text.
+// Mechanisms of the C interface: built-in ones, and those that are read from a file or from text.
 #include <algorithm>
 #include <sstream>
 

@@ -1,5 +1,5 @@
-// Ask and tell: an optimiser runs on a thread of its own, whose evaluator hands each batch of designs to the caller and
-// waits for the values. Either the caller or the optimiser runs, never both.
+// Optimisers with an ask-and-tell interface: an optimiser runs on a thread of its own, whose evaluator hands each batch
+// of designs to the caller and waits for the values. Either the caller or the optimiser runs, never both.
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
@@ -84,7 +84,7 @@ struct pkmopt_optimiser final : pkm::Evaluator, pkm::Monitor {
     if (failure) std::rethrow_exception(failure);
   }
 
-  // Evaluator and Monitor, on the optimiser's thread.
+  // The following functions implement Evaluator and Monitor; they run on the optimiser's thread.
   void evaluate(const pkm::Problem&, pkm::EvaluationTable& asked_table, std::size_t first) override {
     asked = &asked_table;
     first_row = first;
@@ -104,14 +104,15 @@ struct pkmopt_optimiser final : pkm::Evaluator, pkm::Monitor {
     return !is_ending_;
   }
   void warn(const std::string& warning) override {
-    // The only warnings are those of resumed stages, and this one begins without recorded evaluations.
+    // Optimisers print warnings only when a stage is resumed, and this stage has no recorded evaluations.
     throw std::logic_error(warning);
   }
 
   pkm::c::ToldProblem problem;
   pkm::Stage stage;
-  pkm::EvaluationTable table;             ///< of the stage
-  pkm::EvaluationTable* asked = nullptr;  ///< the rows from first_row on are to be evaluated; null: none
+  pkm::EvaluationTable table;             ///< all evaluations of the stage
+  pkm::EvaluationTable* asked = nullptr;  ///< table whose rows from first_row on the caller has to evaluate; null:
+                                          ///< no evaluation is pending
   std::size_t first_row = 0;
   bool is_finished = false;
   std::int64_t best_row = -1;
@@ -123,7 +124,7 @@ struct pkmopt_optimiser final : pkm::Evaluator, pkm::Monitor {
       const pkm::StageInput input{
           .problem = problem, .evaluator = *this, .monitor = *this, .seed = seed_, .starts = starts()};
       best_row = stage.optimiser->minimise(input, table).best_row;
-    } catch (const pkm::Stopped&) {  // the handle is being freed
+    } catch (const pkm::Stopped&) {  // thrown because the handle is being freed
     } catch (...) {
       failure = std::current_exception();
     }
@@ -133,7 +134,7 @@ struct pkmopt_optimiser final : pkm::Evaluator, pkm::Monitor {
     is_callers_turn_ = true;
     changed_.notify_all();
   }
-  /// As in the first stage of a study without baseline.
+  /// The start designs, chosen as in the first stage of a study without baseline.
   std::vector<pkm::StartDesign> starts() const {
     std::vector<double> middle;
     for (std::size_t v = 0; v < problem.space().dimension(); ++v) middle.push_back(problem.space().from_unit(v, 0.5));
@@ -226,7 +227,7 @@ pkmopt_status pkmopt_optimiser_evaluations(const pkmopt_optimiser* optimiser, si
                                            double* objectives, double* margins, uint8_t* status, int64_t* best) {
   return guarded([&] {
     const pkm::EvaluationTable& table = optimiser->table;
-    // The rows that wait for values come last.
+    // The rows that wait for values are the last ones of the table.
     *rows = optimiser->asked == &table ? optimiser->first_row : table.size();
     *best = optimiser->best_row;
     const pkm::EvaluationShape& shape = table.shape();

@@ -1,4 +1,4 @@
-// Contents of study files, and reports.
+// Study files of the C interface: their contents, and reports.
 #include <algorithm>
 #include <filesystem>
 
@@ -126,7 +126,8 @@ pkmopt_status pkmopt_report(size_t count, const char* const* paths, const char* 
   return guarded([&] {
     const std::string file = required_text(output, "output");
     refuse_existing(file, overwrite != 0);
-    pkm::page_assets();  // throws now, before any evaluation, if this library has no page
+    // Throws std::runtime_error now, before any evaluation, if this library was built without the page.
+    pkm::page_assets();
     std::vector<pkm::PageStudy> studies;
     for (std::size_t i = 0; i < count; ++i) {
       const std::string path = required_text(paths[i], "paths");

@@ -8,7 +8,7 @@
 namespace pkm::c {
 namespace {
 
-/// Passes progress reports on to the caller.
+/// Progress display that calls the caller's progress function.
 class Reported final : public Progress {
  public:
   explicit Reported(const pkmopt_run_options& options) : options_(options) {}
@@ -36,7 +36,7 @@ class Reported final : public Progress {
   std::atomic<bool> is_stop_requested_ = false;
 };
 
-/// Runs body(run options, progress) and describes the outcome.
+/// Runs body(run options, progress) and describes its outcome.
 template <class Body>
 Json outcome_of(const pkmopt_run_options* given, const Body& body) {
   const pkmopt_run_options options = given ? *given : pkmopt_run_options{};

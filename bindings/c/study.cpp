@@ -1,4 +1,4 @@
-// Studies: evaluation and differentiation of designs.
+// Studies of the C interface: evaluation and differentiation of designs.
 #include <algorithm>
 #include <sstream>
 
@@ -77,7 +77,7 @@ Json info_of(const Study& study) {
   return info;
 }
 
-/// Where the results of an evaluation go; null: they are not wanted.
+/// Arrays that receive the results of an evaluation; null: the result is not requested.
 struct Outputs {
   double *objectives, *margins, *outputs, *derivatives;
   std::uint8_t* status;
@@ -93,7 +93,7 @@ struct OneDesign {
   std::vector<double> objectives, margins, outputs, derivatives;
 };
 
-/// Evaluates a single design on this thread, with memory that is kept for the next one.
+/// Evaluates a single design on this thread, with scratch memory that is kept for the next design.
 void evaluate_one(const pkmopt_study& handle, const double* design, Detail detail, const Outputs& to) {
   const DesignProblem& problem = *handle.study.problem;
   const EvaluationShape shape = problem.shape(detail);
@@ -124,7 +124,8 @@ void evaluate_one(const pkmopt_study& handle, const double* design, Detail detai
   handle.idle_scratch.push_back(std::move(scratch));
 }
 
-/// Why a design is outside of what the mechanism allows. Only designs outside of the variables' bounds can be.
+/// The reason why the mechanism does not allow a design; empty if it does. Only designs outside of the variables'
+/// bounds can be refused.
 Unsupported refusal(const DesignProblem& problem, std::span<const double> design) {
   for (std::size_t i = 0; i < design.size(); ++i)
     if (!(design[i] >= problem.space()[i].lower && design[i] <= problem.space()[i].upper))
@@ -132,7 +133,7 @@ Unsupported refusal(const DesignProblem& problem, std::span<const double> design
   return {};
 }
 
-/// Evaluates the designs that the mechanism does not refuse; the others have failed.
+/// Evaluates the designs that the mechanism does not refuse; the other designs get the status `failed`.
 void evaluate_all(const pkmopt_study& handle, std::size_t count, const double* designs, Detail detail,
                   const Outputs& to, const pkmopt_options* options) {
   const DesignProblem& problem = *handle.study.problem;

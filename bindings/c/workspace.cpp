@@ -1,4 +1,4 @@
-// Workspaces of the designs of a study: volume with derivatives, fields, surface.
+// Workspaces of the designs of a study in the C interface: volume with derivatives, fields, surface.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,8 @@ std::span<const double> checked_parameters(const pkmopt_study& handle, const dou
   return all;
 }
 
-/// Derivatives of the volume by all parameters, in blocks of the four that a Dual4 has.
+/// Adds the derivatives of the volume with respect to all parameters, computed in blocks of four, the number of
+/// derivatives of Dual4.
 void add_gradient(const WorkspaceEvaluator& workspace, std::span<const double> parameters, double* gradient) {
   constexpr std::size_t kBlock = 4;
   const GradientEvaluator* const evaluator = workspace.gradients();

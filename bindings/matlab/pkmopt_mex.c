@@ -48,8 +48,8 @@ static void check(pkmopt_status status) {
   raise_error(is_known ? identifiers[status] : "pkmopt:internalError", pkmopt_error());
 }
 
-/* What the handlers of Ctrl-C set: a variable of Octave, and a function of MATLAB that is not documented. The one that
- * does not exist is NULL. */
+/* They say whether the user has pressed Ctrl-C: a variable of Octave, and an undocumented function of MATLAB. The
+ * address of the one that the running interpreter does not define is NULL. */
 extern sig_atomic_t octave_interrupt_state __attribute__((weak));
 extern bool utIsInterruptPending(void) __attribute__((weak));
 
@@ -74,22 +74,22 @@ static void give(const Call* call, int index, mxArray* value) {
     mxDestroyArray(value);
 }
 
-/* An argument; NULL if it is [] or missing. */
+/* Returns the argument of a call at an index; NULL if it is [] or missing. */
 static const mxArray* argument(const Call* call, int index) {
   if (index >= call->argument_count || (mxGetM(call->arguments[index]) == 0 && mxGetN(call->arguments[index]) == 0))
     return NULL;
   return call->arguments[index];
 }
 
-/* A copy that the interpreter frees after the call; what mxArrayToString() returns, it does not always free. */
+/* Returns a copy that the interpreter frees after the call. The result of mxArrayToString() is not always freed. */
 static char* copied_text(const mxArray* text) {
-  const size_t size = 4 * mxGetNumberOfElements(text) + 1; /* UTF-8 */
+  const size_t size = 4 * mxGetNumberOfElements(text) + 1; /* a character has at most 4 bytes in UTF-8 */
   char* const copy = mxCalloc(size, 1);
   if (size > 1) mxGetString(text, copy, size);
   return copy;
 }
 
-/* A text; NULL if it is [] or missing. */
+/* Returns the text argument at an index; NULL if it is [] or missing. */
 static const char* text_of(const Call* call, int index, const char* what) {
   const bool is_text = index < call->argument_count && mxIsChar(call->arguments[index]);
   const mxArray* const value = is_text ? call->arguments[index] : argument(call, index);
@@ -128,13 +128,13 @@ static pkmopt_options options_of(const Call* call, int index) {
   return options;
 }
 
-/* What the columns of a matrix are. */
+/* Number and names of the columns that a matrix argument must have; the names are quoted in error messages. */
 typedef struct Columns {
   size_t count;
-  char* names; /* "x, y, z" */
+  char* names; /* separated by commas, such as "x, y, z" */
 } Columns;
 
-/* A real matrix, row by row. */
+/* Copies a real matrix of MATLAB to an array that stores it row by row. */
 static double* rows_of(const mxArray* value, const char* what, Columns columns, size_t* count) {
   const char* problem = NULL;
   if (!value)
@@ -155,7 +155,7 @@ static double* rows_of(const mxArray* value, const char* what, Columns columns, 
   return rows;
 }
 
-/* Rows that belong to `count` poses; a single row stands for all. NULL if they are [] or missing. */
+/* Returns one row for each of `count` poses; a matrix with a single row is repeated. NULL if it is [] or missing. */
 static double* matching_rows(const mxArray* value, const char* what, Columns columns, size_t count) {
   if (!value) return NULL;
   size_t found;
@@ -169,7 +169,7 @@ static double* matching_rows(const mxArray* value, const char* what, Columns col
 
 static double* new_rows(size_t count) { return mxMalloc((count + 1) * sizeof(double)); }
 
-/* An array whose last index varies fastest in `rows`; it has at least two dimensions. */
+/* Creates a MATLAB array, of at least two dimensions, from values in `rows` whose last index varies fastest. */
 static mxArray* array_of(const double* rows, mwSize dimensions, const mwSize* sizes) {
   mwSize all[16] = {1, 1};
   mwSize index[16] = {0};
@@ -255,8 +255,8 @@ static char* json_text(const char** at) {
   return mxRealloc(text, length + 1);
 }
 
-/* Turns a name into that of a field of a struct: "workspace-volume" becomes workspace_volume, "4ppa" x4ppa. A name that
- * `others` have already is followed by a number. */
+/* Converts a name to a valid field name of a struct: "workspace-volume" becomes workspace_volume, "4ppa" x4ppa. A
+ * number is appended to a name that is already among `others`. */
 static char* field_name(const char* name, char** others, size_t count) {
   char* const field = mxMalloc(64);
   const bool begins_with_letter = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z');
@@ -267,7 +267,7 @@ static char* field_name(const char* name, char** others, size_t count) {
   for (size_t i = 0, suffix = 2; i < count; ++i)
     if (strcmp(field, others[i]) == 0) {
       snprintf(field + length, 8, "_%zu", suffix++);
-      i = (size_t)-1; /* compare with all again */
+      i = (size_t)-1; /* compare the changed name with all others again */
     }
   return field;
 }
@@ -298,7 +298,7 @@ static mxArray* json_object(const char** at) {
   return object;
 }
 
-/* Structs as a struct array with the fields of all. */
+/* Joins structs to a struct array that has the fields of all of them; missing fields are []. */
 static mxArray* struct_array(mxArray** values, size_t count) {
   mxArray* const array = mxCreateStructMatrix(1, count, 0, NULL);
   for (size_t i = 0; i < count; ++i)
@@ -311,7 +311,8 @@ static mxArray* struct_array(mxArray** values, size_t count) {
   return array;
 }
 
-/* Numbers become a row vector, in which null is NaN; objects a struct array; everything else a cell row. */
+/* Converts a JSON array: numbers become a row vector, in which null is NaN; objects become a struct array; all other
+ * arrays become a cell row. */
 static mxArray* json_array(const char** at) {
   mxArray** values = NULL;
   size_t count = 0, numbers = 0, nulls = 0, objects = 0;
@@ -343,7 +344,8 @@ static mxArray* json_array(const char** at) {
   return array;
 }
 
-/* The value at a position of a JSON text without spaces between its tokens. */
+/* Converts the JSON value at a position of a text, and moves the position behind it. The text has no spaces between its
+ * tokens. */
 static mxArray* json_value(const char** at) {
   static const struct {
     const char* word;
@@ -390,16 +392,21 @@ static mxArray* parsed(char* allocated) {
 typedef enum Kind { kNone, kMechanism, kDesign, kStudy, kResults, kKinds } Kind;
 static const char* const kind_names[kKinds] = {"object", "mechanism", "design", "study", "study file"};
 enum { kLists = 5 };
-/* Lists of a description that are columns of matrices. */
-enum { kParameters, kCoordinates, kJoints, kLimits };                                /* of a mechanism or design */
-enum { kVariables = kCoordinates, kObjectives = 2, kConstraints = 3, kOutputs = 4 }; /* of a study, with parameters */
+/* Indices of the lists in an object's description whose entries name the columns of matrices. */
+enum { kParameters, kCoordinates, kJoints, kLimits }; /* of a mechanism or design */
+enum {
+  kVariables = kCoordinates,
+  kObjectives = 2,
+  kConstraints = 3,
+  kOutputs = 4
+}; /* of a study, which has kParameters, too */
 
 typedef struct Object {
-  uint64_t id; /* serial number and index */
+  uint64_t id; /* the serial number, and in the lowest kIndexBits bits the index into the table of objects */
   Kind kind;
   void* pointer;
   Columns columns[kLists];
-  size_t stage_count, *stage_rows; /* of a study file */
+  size_t stage_count, *stage_rows; /* numbers of stages and of their evaluations, of a study file */
 } Object;
 
 static Object* objects;
@@ -436,7 +443,8 @@ static void free_all(void) {
   object_capacity = 0;
 }
 
-/* A free place of the table, so that nothing can fail between the creation of an object and its entry. */
+/* Returns a free place of the table of objects. It is reserved before the object of the library is created, because
+ * entering that object must not fail: it would never be freed. */
 static Object* new_object(void) {
   size_t index = 0;
   while (index < object_capacity && objects[index].kind != kNone) ++index;
@@ -449,7 +457,7 @@ static Object* new_object(void) {
     objects = larger;
     object_capacity = capacity;
   }
-  if (next_serial == 0) next_serial = (uint64_t)time(NULL) << 8; /* other numbers than in an earlier session */
+  if (next_serial == 0) next_serial = (uint64_t)time(NULL) << 8; /* differs from the numbers of earlier sessions */
   objects[index].id = next_serial++ << kIndexBits | index;
   return &objects[index];
 }
@@ -469,7 +477,7 @@ static const Object* object_of(const Call* call, int index, Kind kind) {
   return object;
 }
 
-/* The names in a list of a description, whose entries are texts or structs. */
+/* Returns the names in a list of a description; its entries are texts, or structs with the field `name`. */
 static Columns columns_of(const mxArray* info, const char* list) {
   const mxArray* const entries = mxGetField(info, 0, list);
   if (!entries) raise_error("pkmopt:internalError", list);
@@ -484,7 +492,7 @@ static Columns columns_of(const mxArray* info, const char* list) {
   return columns;
 }
 
-/* Enters a created object into its place and returns its id. */
+/* Enters an object of the library into its place in the table; the first result of the call is its id. */
 static void enter(const Call* call, Object* object, Kind kind, void* pointer) {
   object->kind = kind;
   object->pointer = pointer;
@@ -493,7 +501,7 @@ static void enter(const Call* call, Object* object, Kind kind, void* pointer) {
   give(call, 0, id);
 }
 
-/* The description that a function has returned; frees the object after an error. */
+/* Converts the JSON description that a function of the library has returned; after an error, frees the object. */
 static mxArray* description(Object* object, pkmopt_status status, char* json) {
   if (status == PKMOPT_OK) return parsed(json);
   free_object(object);
@@ -511,7 +519,7 @@ static void number(const Call* call) {
   give(call, 0, mxCreateDoubleScalar(value));
 }
 
-/* For tests. */
+/* Counts the objects that have not been freed, for tests. */
 static void object_count(const Call* call) {
   size_t count = 0;
   for (size_t i = 0; i < object_capacity; ++i) count += objects[i].kind != kNone;
@@ -575,7 +583,7 @@ static void mechanism_text(const Call* call) {
   give(call, 0, text_array(text));
 }
 
-/* A row vector of known length; NULL if it is [] or missing. */
+/* Returns the argument at an index, a row vector of known length; NULL if it is [] or missing. */
 static const double* row_of(const Call* call, int index, const char* what, Columns columns) {
   size_t count = 0;
   if (!argument(call, index)) return NULL;
@@ -598,7 +606,7 @@ static void design_create(const Call* call) {
   }
 }
 
-/* Arguments of functions of a design at poses. */
+/* Arguments of commands that evaluate a design at poses. */
 typedef struct AtPoses {
   const pkmopt_design* design;
   size_t coordinates, joints, count;
@@ -606,7 +614,7 @@ typedef struct AtPoses {
   pkmopt_options options;
 } AtPoses;
 
-/* Arguments: design, poses at an index, then threads. */
+/* Reads the design from the first argument, the poses and the number of threads from arguments at the given indices. */
 static AtPoses at_poses(const Call* call, int poses, int threads) {
   const Object* const design = object_of(call, 0, kDesign);
   AtPoses at = {.design = design->pointer,
@@ -793,7 +801,7 @@ static void study_why_failed(const Call* call) {
   give(call, 0, text_array(sentence));
 }
 
-/* All parameters of a mechanism. */
+/* Returns the values of all parameters of the study's mechanism from the argument at an index. */
 static const double* parameters_of(const Call* call, int index, const Object* study) {
   const double* const parameters = row_of(call, index, "parameters", study->columns[kParameters]);
   if (!parameters) refuse("parameters are missing; expected a row of %s", study->columns[kParameters].names);
@@ -877,7 +885,7 @@ static void study_resume(const Call* call) {
   give(call, 0, parsed(json));
 }
 
-/* Results: id, description, and that of the study; [] if the study cannot be read. */
+/* Argument: file. Results: id, description of the file, description of its study or [] if the study cannot be read. */
 static void results_open(const Call* call) {
   Object* const object = new_object();
   pkmopt_results* results;
@@ -908,7 +916,7 @@ static void results_open(const Call* call) {
   give(call, 1, info);
 }
 
-/* The stage of the second argument, from 0. */
+/* Returns the index from 0 of the stage whose number from 1 is the second argument. */
 static size_t stage_of(const Call* call, const Object* results) {
   const int64_t stage = integer_of(call, 1, "stage", 1, (int64_t)results->stage_count);
   if ((size_t)stage > results->stage_count)
@@ -916,7 +924,7 @@ static size_t stage_of(const Call* call, const Object* results) {
   return (size_t)stage - 1;
 }
 
-/* Results: designs, objectives, constraints, outputs, status, generation, seconds. */
+/* Arguments: study file, stage. Results: designs, objectives, constraints, outputs, status, generation, seconds. */
 static void results_evaluations(const Call* call) {
   const Object* const results = object_of(call, 0, kResults);
   const size_t stage = stage_of(call, results), rows = results->stage_rows[stage];

@@ -41,7 +41,7 @@ classdef Design < pkmopt.internal.LibraryObject
 
     function joints = inverse(self, poses, varargin)
     % INVERSE  Inverse kinematics.
-    %   joints = d.inverse(poses)            one row per pose; NaN: the pose does not assemble in the working mode
+    %   joints = d.inverse(poses)            one row per pose; NaN if the mechanism cannot be assembled there
     %   joints = d.inverse(poses, threads)
       joints = pkmopt_mex('design_inverse', self.id, poses, varargin{:});
     end
@@ -51,7 +51,7 @@ classdef Design < pkmopt.internal.LibraryObject
     %   J = d.jacobian(pose)                 a matrix, joints x coordinates
     %   J = d.jacobian(poses)                poses x joints x coordinates
     %   J = d.jacobian(poses, threads)
-    % NaN: the pose does not assemble; infinite or NaN: a serial singularity.
+    % Elements are NaN where the mechanism cannot be assembled, infinite or NaN at a serial singularity.
       J = pkmopt_mex('design_jacobians', self.id, poses, varargin{:});
       if size(J, 1) == 1
         J = reshape(J, size(J, 2), size(J, 3));
@@ -73,7 +73,7 @@ classdef Design < pkmopt.internal.LibraryObject
     end
 
     function isFeasible = feasible(self, poses, varargin)
-    % FEASIBLE  Whether poses assemble and satisfy all constraints.
+    % FEASIBLE  Whether the mechanism can be assembled at poses and satisfies all constraints there.
     %   isFeasible = d.feasible(poses)       logical column
     %   isFeasible = d.feasible(poses, threads)
       isFeasible = all(self.margins(poses, varargin{:}) >= 0, 2);
@@ -84,20 +84,21 @@ classdef Design < pkmopt.internal.LibraryObject
     %   poses = d.forward(joints, near)      near: one pose per row; the nearest pose found, a row of NaN if none
     %   poses = d.forward(joints)            cell column: all poses that the mechanism's method finds, for each row
     %   poses = d.forward(joints, near, threads)
-    % `pkmopt forward` says how complete the list is.
+    % The command `pkmopt forward` says whether the method finds all poses.
       poses = pkmopt_mex('design_forward', self.id, joints, varargin{:});
     end
 
     function found = dynamics(self, poses, varargin)
     % DYNAMICS  Inverse dynamics and equations of motion.
     %   s = d.dynamics(poses, velocities, accelerations, wrenches, threads)
-    % All but the poses may be [] or omitted: zero rates, no wrench. Rates are those of the coordinates; wrenches are
-    % forces and moments on the platform, Fx Fy Fz Mx My Mz. A single row is used for all poses. Results:
+    % All arguments but the poses may be [] or omitted, for zero rates and no wrench. Rates are those of the
+    % coordinates; wrenches are forces [N] and moments [N m] on the platform, Fx Fy Fz Mx My Mz. A single row is used
+    % for all poses. Results:
     %   s.forces           drive forces [N, N m], one row per pose
     %   s.inertia          joint-space inertia matrices, poses x joints x joints
     %   s.coriolis         Coriolis and centrifugal forces at the joints
     %   s.gravity          gravity at the joints
-    % NaN: the pose does not assemble or is singular.
+    % Results are NaN where the mechanism cannot be assembled or is singular.
       [found.forces, found.inertia, found.coriolis, found.gravity] = ...
         pkmopt_mex('design_dynamics', self.id, poses, varargin{:});
     end
@@ -106,7 +107,7 @@ classdef Design < pkmopt.internal.LibraryObject
     % LINKS  The links as capsules, for drawings.
     %   s = d.links(poses)                   s.names, s.parts: cell rows; s.end1, s.end2: ends of the
     %                                        axes, poses x links x 3;
-    %                                        s.radius: poses x links; NaN: the pose does not assemble
+    %                                        s.radius: poses x links; NaN: cannot be assembled
       [capsules, described] = pkmopt_mex('design_links', self.id, poses, varargin{:});
       count = size(capsules, 1);
       found.names = pkmopt.internal.names(described);
@@ -125,7 +126,8 @@ classdef Design < pkmopt.internal.LibraryObject
     %   [V, gradient, relativeError, unit] = d.volume()   gradient: a row, in the order of d.parameterNames
     %   ... = d.volume('method', 'voxels', 'cells', struct('x', 40, 'y', 40, 'z', 40), 'threads', 2)
     % Options are the keys of [workspace] of a study, and 'threads'. The derivatives need the method 'columns', the
-    % default of most mechanisms. The relative error is estimated, as far as sampled; NaN for voxels.
+    % default of most mechanisms. The relative error is an estimate that
+    % does not include parts of the workspace between the sampled slices; it is NaN for voxels.
       [study, threads] = self.workspaceStudy(varargin);
       values = self.workspaceParameters(study);
       if nargout > 1
@@ -217,7 +219,7 @@ classdef Design < pkmopt.internal.LibraryObject
     end
 
     function values = workspaceParameters(self, study)
-    % The parameters in the order of the study.
+    % Returns the parameters in the order of the study.
       [~, order] = ismember(pkmopt.internal.names(study.info.parameters), self.parameterNames);
       values = self.parameters(order);
     end

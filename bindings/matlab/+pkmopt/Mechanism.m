@@ -100,7 +100,7 @@ classdef Mechanism < pkmopt.internal.LibraryObject
     end
 
     function m = withMasses(self, model)
-    % WITHMASSES  The mechanism with another mass model, one of info.mass_models.
+    % WITHMASSES  A copy of the mechanism with another mass model, one of info.mass_models.
     %   m = m.withMasses('point-masses')
       [newId, newInfo] = pkmopt_mex('mechanism_with_masses', self.id, pkmopt.internal.text(model, 'mass model'));
       m = pkmopt.Mechanism({self.isBuiltIn, self.fileName}, newId, newInfo);

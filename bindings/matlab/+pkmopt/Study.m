@@ -97,17 +97,17 @@ classdef Study < pkmopt.internal.LibraryObject
     end
 
     function sentence = whyFailed(self, x, varargin)
-    % WHYFAILED  Why a design failed, one sentence; '' if it did not.
+    % WHYFAILED  Why a design could not be evaluated, as one sentence; '' if it could.
     %   sentence = s.whyFailed(x)
       sentence = pkmopt_mex('study_why_failed', self.id, x, varargin{:});
     end
 
     function results = run(self, file, varargin)
-    % RUN  Runs the study and writes its file, with the same bits as `pkmopt run`.
+    % RUN  Runs the study and writes its file; the results are bitwise equal to those of `pkmopt run`.
     %   results = s.run('study.h5')
     %   results = s.run('study.h5', 'seed', 2, 'overwrite', true, 'timeLimit', 60, 'threads', 4)
-    % timeLimit: wall time in s after which the run stops with a checkpoint. Ctrl-C stops it with a checkpoint, too;
-    % pkmopt.resume continues.
+    % timeLimit: wall time in s after which the run stops with a checkpoint. Ctrl-C stops it with a checkpoint, too.
+    % pkmopt.resume continues the run from the checkpoint.
       known = struct('seed', [], 'overwrite', false, 'timeLimit', 0, 'threads', 0);
       options = pkmopt.internal.options(known, varargin);
       file = pkmopt.internal.text(file, 'file');

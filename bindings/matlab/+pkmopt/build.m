@@ -51,7 +51,7 @@ end
 end
 
 function [includeFolder, libraryFolder] = find_library(here)
-% The folders of pkmopt.h and libpkmopt.so.
+% Returns the folders of pkmopt.h and libpkmopt.so.
 root = fileparts(here);
 places = {fullfile(root, 'include'), fullfile(root, 'lib')};  % archive
 for preset = {'quickstart', 'release', 'ci'}                  % source tree

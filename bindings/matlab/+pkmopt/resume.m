@@ -2,7 +2,8 @@ function results = resume(file, varargin)
 % RESUME  Continues a stopped study from its file, or extends the last stage of a finished one.
 %   results = pkmopt.resume('study.h5')
 %   results = pkmopt.resume('study.h5', 'generations', 200, 'evaluations', [], 'timeLimit', 60, 'threads', 4)
-% generations, evaluations: totals of the last stage. Ctrl-C stops with a checkpoint.
+% generations, evaluations: new total numbers of the last stage; 0 or [] keeps the old limit. timeLimit: wall time in s.
+% Ctrl-C stops the run with a checkpoint.
 %
 % See also pkmopt.Study.run, pkmopt.Results
 pkmopt.internal.require_mex();

@@ -15,7 +15,7 @@ from ._worker import Function
 
 
 def name_of(function: Function) -> str:
-    """How a study names a function: "FILE.py:NAME" if a process can import it, otherwise its name."""
+    """The name of a function in a study: "FILE.py:NAME" if a process can import it, otherwise its own name."""
     name = getattr(function, "__qualname__", type(function).__name__)
     file = _file_of(function)
     if file is None or "<" in name:
@@ -33,7 +33,7 @@ def _file_of(function: Any) -> Any:
 
 
 def _hash_of(call: str, function: Function) -> str:
-    """Hash of what defines the function; "" if its source is unknown."""
+    """Hash of the source text that defines the function; "" if the source is unknown."""
     file = _file_of(function)
     if ":" in call and file:
         source = Path(file).read_bytes()
@@ -71,7 +71,7 @@ _FUNCTION = ctypes.CFUNCTYPE(
 
 
 class _Struct(ctypes.Structure):
-    """pkmopt_functions."""
+    """The struct pkmopt_functions of the C interface."""
 
     _fields_ = [
         ("function", _FUNCTION),
@@ -83,7 +83,7 @@ class _Struct(ctypes.Structure):
 
 
 class Connected:
-    """Functions that the library calls. To be kept as long as it may do so."""
+    """Functions that the library calls. The object must be kept as long as the library may call them."""
 
     def __init__(self, functions: Mapping[str, Function], parameters: Sequence[str]) -> None:
         self._functions = dict(functions)
@@ -109,13 +109,13 @@ class Connected:
 
 
 class PythonOptions(ctypes.Structure):
-    """pkmopt_python."""
+    """The struct pkmopt_python of the C interface."""
 
     _fields_ = [("workers", ctypes.c_int), ("program", ctypes.c_char_p), ("path", ctypes.c_char_p)]
 
 
 def python_options(workers: int) -> PythonOptions:
-    """This interpreter, with this process's folders of modules."""
+    """Options for worker processes that use this interpreter and the folders of modules of this process."""
     path = ":".join(os.path.abspath(folder) for folder in sys.path if ":" not in folder)
     return PythonOptions(lib.count(workers, "workers", "0 for one per core"), os.fsencode(sys.executable), os.fsencode(path))
 

@@ -74,7 +74,7 @@ def _load() -> ctypes.CDLL:
 
 
 class Options(ctypes.Structure):
-    """pkmopt_options."""
+    """The struct pkmopt_options of the C interface."""
 
 
 INTERRUPT = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)
@@ -119,7 +119,7 @@ PROGRESS = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(Progress), ctypes.c_voi
 
 
 class RunOptions(ctypes.Structure):
-    """pkmopt_run_options."""
+    """The struct pkmopt_run_options of the C interface."""
 
     _fields_ = [
         ("common", Options),
@@ -201,7 +201,7 @@ def options(threads: int = 0) -> Options:
 
 
 def count(value: Any, what: str, zero: str) -> int:
-    """A number >= 1, or 0 with the given meaning."""
+    """Checks a number that must be >= 1, or 0, which has the given meaning."""
     if not isinstance(value, (int, np.integer)) or value < 0:
         raise ValueError("%s is %r; expected a number >= 1, or %s" % (what, value, zero))
     return int(value)
@@ -229,13 +229,13 @@ def call(name: str, *arguments: Any) -> None:
 
 
 def quick_call(function: Any, *arguments: Any) -> None:
-    """The same for calls of microseconds, which need not react to signals before they end."""
+    """As call(), for functions that take microseconds and need not react to signals before they end."""
     if os.getpid() != _process or function(*arguments) != _OK:
         call(function.__name__, *arguments)
 
 
 def address(array: npt.NDArray[Any]) -> int:
-    """Quicker than array.ctypes.data for an array that is writable and not empty."""
+    """Address of the elements of an array. Faster than array.ctypes.data if the array is writable and not empty."""
     try:
         return ctypes.addressof(ctypes.c_char.from_buffer(array))  # type: ignore[arg-type]
     except (TypeError, ValueError):
@@ -256,7 +256,8 @@ class Handle:
         self._as_parameter_ = pointer
         self._free: Callable[..., Any] = getattr(library, free)
 
-    # Arguments: at the end of the interpreter the module may have lost its names before its last objects.
+    # The default arguments keep these functions alive: when the interpreter ends, the names of the module may be
+    # deleted before its last objects.
     def __del__(self, getpid: Callable[[], int] = os.getpid, process: int = _process) -> None:
         if self._as_parameter_ and getpid() == process:
             self._free(self._as_parameter_)
@@ -289,7 +290,7 @@ def taken_json(pointer: ctypes.c_void_p) -> Any:
 
 
 def taken_array(pointer: ctypes.c_void_p, shape: Tuple[int, ...], dtype: Any) -> Any:
-    """A copy of an allocated array, which is freed."""
+    """A copy of an array that the library has allocated; the original array is freed."""
     try:
         count = int(np.prod(shape))
         bytes_ = ctypes.string_at(pointer, count * np.dtype(dtype).itemsize)
@@ -309,7 +310,7 @@ def encoded(value: Optional[str]) -> Optional[bytes]:
 
 
 def suggestion(name: Any, names: Sequence[str]) -> str:
-    """The closest name, for the end of a message."""
+    """Text that suggests the closest known name, for the end of a message."""
     near = difflib.get_close_matches(str(name), names, 1)
     return "; did you mean %r?" % near[0] if near else ""
 

@@ -1,4 +1,4 @@
-"""Writes TOML: what studies and mechanism files need of it."""
+"""Writes TOML, as far as studies and mechanism files need it."""
 
 from __future__ import annotations
 

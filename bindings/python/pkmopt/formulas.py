@@ -185,14 +185,14 @@ class Description:
         self._lists.setdefault("quantity", []).append(table)
 
     def survey(self, **box: Any) -> None:
-        """The search box of workspaces: a range for each coordinate, (from, to); a value is fixed."""
+        """The search box of workspaces: for each coordinate, its range (from, to), or a value at which it is fixed."""
         ranges = {c: list(r) for c, r in box.items() if isinstance(r, (tuple, list))}
         fixed = {c: r for c, r in box.items() if c not in ranges}
         self._tables["survey"] = {"sweep": list(ranges), "box": ranges, **({"fixed": fixed} if fixed else {})}
 
     def table(self, name: str, **keys: Any) -> None:
-        """Further keys of a table, [masses], [platform], .., or a further [[frame]], [[link]], .. if ``name`` is one of
-        those."""
+        """Adds keys to a table, such as [masses] or [platform], or adds an element to an array of tables, such as
+        [[frame]] or [[link]]."""
         if name in ("frame", "link", "body", "joint", "design", "limit"):
             self._lists.setdefault(name, []).append(keys)
         else:

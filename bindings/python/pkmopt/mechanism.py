@@ -46,7 +46,7 @@ class Limit(NamedTuple):
 
 
 class Dynamics(NamedTuple):
-    """Inverse dynamics of several states; rows of NaN where a pose does not assemble or is singular."""
+    """Inverse dynamics of several states; a row is NaN if its pose cannot be assembled or is singular."""
 
     forces: Array  #: drive forces [count, joints] in N, N m
     inertia: Array  #: joint-space inertia matrices [count, joints, joints]
@@ -65,7 +65,7 @@ class Links(NamedTuple):
 
 
 class Fields:
-    """Quantities on a grid over a workspace; ``fields["lti"]`` is that of a name."""
+    """Quantities on a grid over a workspace; ``fields["lti"]`` is the array of the quantity with this name."""
 
     def __init__(self, info: Mapping[str, Any], values: Array) -> None:
         #: centres of the cells along each swept coordinate
@@ -75,12 +75,12 @@ class Fields:
             self.axes[axis["name"]] = axis["lower"] + step * (np.arange(axis["cells"]) + 0.5)
         #: units of all coordinates, swept and fixed
         self.axis_units: Dict[str, str] = {axis["name"]: axis["unit"] for axis in [*info["axes"], *info["fixed"]]}
-        #: values of the other coordinates
+        #: values of the coordinates that are not swept
         self.fixed: Dict[str, float] = {fixed["name"]: fixed["value"] for fixed in info["fixed"]}
-        #: by name, each with one dimension per axis; NaN where undefined
+        #: arrays of the quantities by name, each with one dimension per axis; NaN where undefined
         self.values: Dict[str, Array] = {field["name"]: values[i] for i, field in enumerate(info["fields"])}
         self.units: Dict[str, str] = {field["name"]: field["unit"] for field in info["fields"]}
-        #: of the feasible cells
+        #: volume of the feasible cells, in ``volume_unit``
         self.volume: float = info["volume"]
         self.volume_unit: str = info["volume_unit"]
 
@@ -108,7 +108,7 @@ def mechanism_names() -> List[str]:
 
 
 class Mechanism:
-    """A mechanism: built in, by its name, or from a mechanism file.
+    """A mechanism: a built-in one, given by its name, or one from a mechanism file.
 
     >>> Mechanism("4ppa-2par").coordinates
     ['x', 'y', 'z', 'theta']
@@ -132,7 +132,7 @@ class Mechanism:
 
     @classmethod
     def from_text(cls, toml: str, file_name: str = "mechanism.toml", _limb_parameters: str = "") -> "Mechanism":
-        """Reads the text of a mechanism file; ``file_name`` is named in messages."""
+        """Reads the text of a mechanism file; messages mention ``file_name``."""
         self = cls.__new__(cls)
         self._set(
             lib.handle(
@@ -217,7 +217,7 @@ class Mechanism:
         return Design(self, given, mode, limits or {})
 
     def _study_tables(self) -> Dict[str, Any]:
-        """[mechanism] of a study."""
+        """The table [mechanism] of a study."""
         table: Dict[str, Any] = {"type" if self._is_built_in else "file": self._file_name}
         if self.info["masses"] and self.info["masses"] != self.info["mass_models"][0]:
             table["masses"] = self.info["masses"]
@@ -301,7 +301,7 @@ class Design:
         return result
 
     def inverse(self, poses: Any, threads: int = 0) -> Array:
-        """Joint values [count, joints]; a row of NaN for a pose that does not assemble in the working mode."""
+        """Joint values [count, joints]; a row is NaN if the pose cannot be assembled in the working mode."""
         return self._at("pkmopt_design_inverse", poses, (len(self.mechanism.joints),), threads)
 
     def jacobian(self, poses: Any, threads: int = 0) -> Array:
@@ -325,7 +325,7 @@ class Design:
         return self._at("pkmopt_design_margins", poses, (len(self.margin_names),), threads)
 
     def feasible(self, poses: Any, threads: int = 0) -> Any:
-        """Whether poses assemble and satisfy all constraints [count]."""
+        """For each pose, whether the mechanism can be assembled and all constraints are satisfied [count]."""
         with np.errstate(invalid="ignore"):
             return np.all(self.margins(poses, threads) >= 0, axis=-1)
 
@@ -393,7 +393,7 @@ class Design:
         return Dynamics(*[each[0] for each in result]) if single else result
 
     def links(self, poses: Any, threads: int = 0) -> Links:
-        """The links as capsules, for drawings; NaN for a pose that does not assemble."""
+        """The links as capsules, for drawings; NaN for a pose at which the mechanism cannot be assembled."""
         described = lib.parsed("pkmopt_design_link_names", self._handle)
         capsules = self._at("pkmopt_design_links", poses, (len(described), 7), threads)
         return Links(
@@ -410,7 +410,7 @@ class Design:
         return Workspace(self, workspace)
 
     def volume_and_gradient(self, threads: int = 0, **workspace: Any) -> Tuple[float, Dict[str, float]]:
-        """The workspace volume and its derivatives by all parameters; needs columns."""
+        """The workspace volume and its derivatives with respect to all parameters; requires the method "columns"."""
         found = self.workspace(**workspace)
         return found.volume, found.gradient(threads)
 
@@ -469,7 +469,7 @@ class Workspace:
 
     @property
     def error(self) -> float:
-        """Estimated relative error of the volume, as far as sampled; NaN for voxels."""
+        """Estimated relative error of the volume, without components that no sample has found; NaN for voxels."""
         return (self._volume or self._measure(None, 0))[1]
 
     @property
@@ -477,7 +477,7 @@ class Workspace:
         return str(self.info["volume_unit"])
 
     def gradient(self, threads: int = 0) -> Dict[str, float]:
-        """Derivatives of the volume by all parameters; needs columns."""
+        """Derivatives of the volume with respect to all parameters; requires the method "columns"."""
         values = np.empty(len(self._parameters))
         self._measure(values, threads)
         return {p["name"]: float(d) for p, d in zip(self.info["parameters"], values)}

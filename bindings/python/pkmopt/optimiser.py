@@ -1,4 +1,4 @@
-"""The optimisers for functions of your own: ask for designs, tell their values."""
+"""Optimisers for your own functions: ask() returns designs, tell() passes their values to the optimiser."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Told(NamedTuple):
 
 
 class Optimiser:
-    """An optimiser that asks for designs and is told their values.
+    """An optimiser with an ask-and-tell interface: you evaluate the designs that it requests.
 
     ``bounds`` are (min, max) or (min, max, step) by variable, ``maximise`` is a flag, or one by objective, and further
     keywords are the options of the optimiser, see `pkmopt list optimisers`. The same arguments and values give the same
@@ -111,12 +111,12 @@ class Optimiser:
 
     @property
     def finished(self) -> bool:
-        """Whether the optimiser has ended: it asks for nothing any more."""
+        """Whether the optimiser has ended, i.e. requests no more designs."""
         return len(self._batch) == 0
 
     def ask(self, n: Optional[int] = None) -> Array:
         """The next designs to evaluate [count, variables]: all that the optimiser needs at once, such as a generation,
-        or at most ``n`` of them. Empty if all open designs have been asked for, or if it has ended."""
+        or at most ``n`` of them. Empty if all requested designs have been returned, or if the optimiser has ended."""
         if n is not None and n < 0:
             raise ValueError("n is %r; expected a number >= 0, or None for all" % n)
         end = len(self._batch) if n is None else min(len(self._batch), self._asked + n)
@@ -125,7 +125,7 @@ class Optimiser:
         return designs
 
     def tell(self, X: Any, F: Any, G: Any = None, dF: Any = None, dG: Any = None) -> None:
-        """Tells the values of asked designs, in the order in which they were asked.
+        """Passes the values of designs to the optimiser, in the order in which ask() returned the designs.
 
         ``F`` has the objectives [count, objectives] or [count]; NaN: the design failed. ``G`` has the constraints
         [count, constraints], satisfied if >= 0. ``dF`` and ``dG`` are derivatives [count, .., variables], for

@@ -1,5 +1,5 @@
 classdef LibraryObject < handle
-% LIBRARYOBJECT  An object that the library keeps, freed with its last copy in MATLAB.
+% LIBRARYOBJECT  Handle of an object of the C library, which is freed when the last copy of the handle is deleted.
   properties (SetAccess = protected, Hidden, Transient)
     id  % empty: none
   end

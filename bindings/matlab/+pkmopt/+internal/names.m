@@ -1,5 +1,5 @@
 function list = names(entries)
-% The names of a struct array, a cell row.
+% Returns the field .name of all elements of a struct array as a cell row.
 list = cell(1, 0);
 if ~isempty(entries)
   list = {entries.name};

@@ -1,5 +1,5 @@
 function values = options(values, given)
-% Replaces the values of a struct by those given as names and values.
+% Replaces values of a struct of default options by those that the caller gave as pairs of name and value.
 list = pkmopt.internal.pairs(given);
 for i = 1:2:numel(list)
   if ~isfield(values, list{i})

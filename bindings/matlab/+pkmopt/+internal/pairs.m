@@ -1,5 +1,5 @@
 function list = pairs(given)
-% A struct, or a cell {name, value, ..}, as a cell row {name, value, ..}.
+% Converts a struct, or a cell {name, value, ..}, to a cell row {name, value, ..}.
 if isstruct(given) && isscalar(given)
   list = [fieldnames(given)'; struct2cell(given)'];
   list = list(:)';

@@ -1,5 +1,5 @@
 function refuse(what, name, known)
-% Ends with the error for an unknown name, which suggests the most similar known one.
+% Throws the error for an unknown name, whose message suggests the most similar known name.
 suggestion = '';
 distances = cellfun(@(other) edit_distance(lower(name), lower(other)), known);
 [smallest, at] = min(distances);
@@ -10,7 +10,7 @@ error('pkmopt:invalidInput', 'unknown %s ''%s''; expected one of %s%s', what, na
 end
 
 function distance = edit_distance(a, b)
-% Levenshtein distance.
+% Returns the Levenshtein distance of two texts: the least number of inserted, deleted and replaced characters.
 row = 0:numel(b);
 for i = 1:numel(a)
   previous = row;

@@ -1,5 +1,5 @@
 function require_mex()
-% Ends with an error if the MEX file has not been compiled, or its folder is not on the path.
+% Throws an error if the MEX file has not been compiled, or its folder is not on the path.
 if exist('pkmopt_mex', 'file') ~= 3
   error('pkmopt:notBuilt', ['the MEX file pkmopt_mex is missing: run pkmopt.build once; if it is in a folder of ' ...
         'its own, add that folder to the path']);

@@ -1,5 +1,5 @@
 function table = selected(table, rows)
-% The given rows of all fields.
+% Selects the given rows of the matrices in all fields of a struct.
 for name = fieldnames(table)'
   table.(name{1}) = table.(name{1})(rows, :);
 end

@@ -1,5 +1,5 @@
 function value = text(value, what)
-% A text as a char row; accepts the class string of MATLAB.
+% Converts a text to a char row; also accepts MATLAB's class string.
 if isa(value, 'string') && isscalar(value)
   value = char(value);
 end

@@ -1,5 +1,5 @@
 function text = toml(value)
-% A value as TOML, in one line.
+% Writes a value of MATLAB as a TOML value in one line.
 if isa(value, 'string') && isscalar(value)
   value = char(value);
 end
