@@ -43,9 +43,7 @@ class Loads {
     std::vector<Vector3> rates;
     for (std::size_t i = 0; i < n_; ++i) {
       const auto rate = [&](std::size_t axis) {
-        return model_.term(expression::derivative(
-            model_.graph, point[axis].node(),
-            model_.graph.input(model_.inputs.coordinate(i), generic::Inputs::coordinate_group(i))));
+        return model_.term(expression::derivative(model_.graph, point[axis].node(), model_.coordinate(i)));
       };
       rates.emplace_back(rate(0), rate(1), rate(2));
     }

@@ -25,10 +25,6 @@ using expression::Node;
 using generic::Inputs;
 using limbs::Rotation, limbs::Term, limbs::Vector3;
 
-Node coordinate_node(MechanismDraft& draft, std::size_t i) {
-  return draft.model.graph.input(draft.model.inputs.coordinate(i), Inputs::coordinate_group(i));
-}
-
 /// Rotates the platform's frame about an axis of the moving frame. Adds the contribution of this rotation to the
 /// angular velocities of the platform for unit rates of the coordinates.
 void add_rotation(const PlatformMotion& motion, const Term& angle, MechanismDraft& draft) {
@@ -38,7 +34,7 @@ void add_rotation(const PlatformMotion& motion, const Term& angle, MechanismDraf
     if (motion.coordinate && *motion.coordinate != i) continue;
     const Term rate = motion.coordinate
                           ? Term(model.graph, 1.0)
-                          : model.term(expression::derivative(model.graph, angle.node(), coordinate_node(draft, i)));
+                          : model.term(expression::derivative(model.graph, angle.node(), draft.model.coordinate(i)));
     for (std::size_t k = 0; k < 3; ++k) {
       Node& direction = model.rotation_directions[i][k];
       direction = (model.term(direction) + axis[k] * rate).node();
@@ -57,7 +53,7 @@ Term dependent(const PlatformMotion& motion, const ConfigValue& user, MechanismD
 const Rotation& rotation_of_platform(const ConfigValue& platform, MechanismDraft& draft) {
   while (!draft.waiting_rotations.empty()) {
     const PlatformMotion motion = draft.waiting_rotations.front();
-    const Term angle = motion.coordinate ? draft.model.term(coordinate_node(draft, *motion.coordinate))
+    const Term angle = motion.coordinate ? draft.model.term(draft.model.coordinate(*motion.coordinate))
                                          : dependent(motion, platform, draft);
     add_rotation(motion, angle, draft);
     draft.waiting_rotations.erase(draft.waiting_rotations.begin());
@@ -173,7 +169,7 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
       model.dependent.push_back({name, motion.unit(), kind, {}});
     } else {
       const std::size_t i = model.inputs.coordinates++;
-      const Term coordinate = model.term(coordinate_node(draft, i));
+      const Term coordinate = model.term(draft.model.coordinate(i));
       draft.scope.add(value, name, coordinate.node());
       motion.coordinate = i;
       model.info.coordinates.push_back({name, motion.unit()});

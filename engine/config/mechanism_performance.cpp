@@ -256,9 +256,7 @@ class Performance {
     std::vector<Term> row;
     for (std::size_t j = 0; j < n; ++j) {
       const auto by_x = [&](std::size_t axis) {
-        return model_.term(expression::derivative(
-            model_.graph, force->end[axis].node(),
-            model_.graph.input(model_.inputs.coordinate(j), generic::Inputs::coordinate_group(j))));
+        return model_.term(expression::derivative(model_.graph, force->end[axis].node(), model_.coordinate(j)));
       };
       row.push_back(dot(force->force, Vector3{by_x(0), by_x(1), by_x(2)}));
     }

@@ -32,8 +32,7 @@ std::vector<Moving> moving_inputs(generic::Model& model) {
   const Inputs& at = model.inputs;
   std::vector<Moving> all;
   for (std::size_t i = 0; i < at.coordinates; ++i)
-    all.push_back({model.info.coordinates[i].name, model.graph.input(at.coordinate(i), Inputs::coordinate_group(i)),
-                   model.graph.input(at.rate(i), Inputs::kRates),
+    all.push_back({model.info.coordinates[i].name, model.coordinate(i), model.graph.input(at.rate(i), Inputs::kRates),
                    model.graph.input(at.acceleration(i), Inputs::kRates)});
   for (std::size_t i = 0; i < at.extras; ++i)
     all.push_back({model.info.inputs[i].name, model.graph.input(at.extra(i), Inputs::kExtras),

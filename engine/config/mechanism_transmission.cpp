@@ -96,7 +96,7 @@ void add_transmission(const ConfigValue& root, const ConfigValue* study, Mechani
   for (std::size_t i = 0; i < n; ++i) {
     all.push_back(single_force_of(draft.limbs[i]));
     for (std::size_t j = 0; j < n; ++j) {
-      const Node x = graph.input(model.inputs.coordinate(j), Inputs::coordinate_group(j));
+      const Node x = model.coordinate(j);
       const auto by_x = [&](std::size_t axis) {
         return Term(graph, expression::derivative(graph, all[i].end[axis].node(), x));
       };

@@ -16,7 +16,7 @@ class Equations {
  public:
   explicit Equations(Model& model) : model_(model), along_(model.graph), n_(model.inputs.coordinates) {
     for (std::size_t i = 0; i < n_; ++i) {
-      const Node coordinate = model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i));
+      const Node coordinate = model.coordinate(i);
       by_.emplace_back(model.graph).set_rate(coordinate, model.graph.number(1));
       along_.set_rate(coordinate, model.graph.input(model.inputs.rate(i), Inputs::kRates));
     }

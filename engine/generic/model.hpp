@@ -350,6 +350,8 @@ struct Model {
   std::function<std::shared_ptr<const Mechanism>(const std::string& mass_model)> with_masses;
 
   limbs::Term term(Node node) { return {graph, node}; }
+  /// The node of a coordinate's value.
+  Node coordinate(std::size_t i) { return graph.input(inputs.coordinate(i), Inputs::coordinate_group(i)); }
 };
 
 }  // namespace pkm::generic

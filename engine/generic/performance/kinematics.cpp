@@ -8,10 +8,6 @@
 namespace pkm::generic {
 namespace {
 
-Node coordinate(Model& model, std::size_t i) {
-  return model.graph.input(model.inputs.coordinate(i), Inputs::coordinate_group(i));
-}
-
 /// A copy of the matrix without the rows whose elements are all 0.
 TermMatrix without_zero_rows(const TermMatrix& A) {
   std::vector<std::size_t> kept;
@@ -69,7 +65,7 @@ FirstOrderKinematics first_order_kinematics(Model& model) {
   for (std::size_t j = 0; j < n; ++j) {
     if (model.rotation_axes[j]) rotations.push_back(j);
     for (std::size_t i = 0; i < 3; ++i) {
-      translation(i, j) = model.term(expression::derivative(model.graph, model.origin[i], coordinate(model, j)));
+      translation(i, j) = model.term(expression::derivative(model.graph, model.origin[i], model.coordinate(j)));
       rotation(i, j) = model.term(model.rotation_directions[j][i]);
     }
   }
