@@ -17,8 +17,7 @@ namespace {
 
 class CycleTime final : public Quantity {
  public:
-  explicit CycleTime(const EntryContext& context)
-      : fastest_(context, context.options.word("law") == "own" ? FastestLaw::own : FastestLaw::optimal) {
+  explicit CycleTime(const EntryContext& context) : fastest_(context) {
     if (fastest_.motion().of_design)
       why_no_derivatives_ = "cycle-time has no derivatives by parameters of the motion, and the motion " +
                             fastest_.motion().name + " depends on the design; use an optimiser without gradients";

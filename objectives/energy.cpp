@@ -81,8 +81,8 @@ class Energy final : public Quantity {
 /// The energy over the fastest motion.
 class EnergyOfFastest final : public Quantity {
  public:
-  EnergyOfFastest(const EntryContext& context, FastestLaw law)
-      : fastest_(context, law), recuperates_(context.options.flag("recuperation")) {}
+  explicit EnergyOfFastest(const EntryContext& context)
+      : fastest_(context), recuperates_(context.options.flag("recuperation")) {}
 
   Unsupported why_no_derivatives() const override {
     return "the energy over a fastest motion has no derivatives; use an optimiser without gradients";
@@ -106,9 +106,7 @@ class EnergyOfFastest final : public Quantity {
 };
 
 std::unique_ptr<Quantity> make_energy(const EntryContext& context) {
-  const std::string& law = context.options.word("law");
-  if (law != "given")
-    return std::make_unique<EnergyOfFastest>(context, law == "own" ? FastestLaw::own : FastestLaw::optimal);
+  if (context.options.word("law") != "given") return std::make_unique<EnergyOfFastest>(context);
   for (const char* const limit : {"tool_speed", "tool_acceleration"})
     if (context.options.has(limit))
       throw std::invalid_argument(std::string(limit) +

@@ -47,10 +47,10 @@ std::vector<OptionSpec> fastest_options() {
       {.name = "tool_acceleration", .unit = "m/s^2", .meaning = "maximum acceleration of the tool", .positive = true}};
 }
 
-FastestOfDesign::FastestOfDesign(const EntryContext& context, FastestLaw law)
+FastestOfDesign::FastestOfDesign(const EntryContext& context)
     : limits_(limits_of(context)),
       motion_(motion_of(context)),
-      law_(law),
+      law_(context.options.word("law") == "own" ? FastestLaw::own : FastestLaw::optimal),
       nodes_(nodes_of(context)),
       moves_(std::make_shared<const MovesOfMotion>(motion_.motion, law_, nodes_)),
       mode_(mode_of(context)),

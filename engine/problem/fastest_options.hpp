@@ -15,9 +15,10 @@ std::vector<OptionSpec> fastest_options();
 /// The fastest motion along the path of the motion named in the options, for any design.
 class FastestOfDesign {
  public:
+  /// The option `law` of the context decides on the time law (FastestLaw).
   /// Throws std::invalid_argument with a message if the limits do not bound the speed of the motion, or if the motion
   /// has no fastest execution.
-  FastestOfDesign(const EntryContext& context, FastestLaw law);
+  explicit FastestOfDesign(const EntryContext& context);
 
   const DesignMotion& motion() const { return motion_; }
   DesignWithLimits with_limits(const Mechanism& mechanism, std::span<const double> parameters) const {
