@@ -11,12 +11,18 @@ pkm_build_packages=(
   libcli11-dev nlohmann-json3-dev   # command line, --json
   librandom123-dev                  # counter-based random numbers
 )
-pkm_test_packages=(
+# Packages with which the tests are compiled.
+pkm_test_libraries=(
   libgtest-dev libgmock-dev libbenchmark-dev
   libfcl-dev                                  # independent computation of capsule distances
   libsimbody-dev                              # independent computation of drive forces
   libmujoco-dev                               # independent simulation of exported models
   libmpfi-dev                                 # independent interval arithmetic
+  libopenmpi-dev openmpi-bin                  # runs with several processes
+  clang-format-14
+)
+# Packages that the tests need when they run, in addition.
+pkm_test_packages=(
   python3 python3-numpy python3-h5py          # independent reading of study files
   mypy                                        # annotations of the Python package
   python3-nbclient python3-nbformat python3-ipykernel python3-matplotlib  # notebooks and plots
@@ -26,15 +32,13 @@ pkm_test_packages=(
   python3-vtk9                                # reading of exported workspaces as in ParaView
   chromium                                    # tests of the pages of pkmopt report
   clang-14 libclang-rt-14-dev libomp-14-dev   # second compiler, its sanitizers and OpenMP
-  clang-format-14
-  libopenmpi-dev openmpi-bin                  # runs with several processes
-  slurm-wlm munge                             # and runs started by a cluster's scheduler
+  slurm-wlm munge                             # runs started by a cluster's scheduler
 )
 # For the documentation website: C++ interface, copy buttons, formulas, and the structure of study files.
 pkm_docs_packages=(
   python3-sphinx python3-myst-parser furo python3-breathe doxygen python3-sphinx-copybutton libjs-katex python3-h5py python3-numpy
 )
-pkm_test_packages+=("${pkm_docs_packages[@]}")
+pkm_test_packages+=("${pkm_test_libraries[@]}" "${pkm_docs_packages[@]}")
 # For the page of pkmopt report. Debian's package conflicts with a node from another source, so look for the command.
 command -v npm >/dev/null || pkm_build_packages+=(npm)
 
