@@ -126,6 +126,8 @@ ColumnVolume::ColumnVolume(const Evaluation& evaluation, const WorkspacePlan& pl
   }
   if (needs_samples || (!edges_ && !corner_curves_)) slices();
   if (!needs_samples) return;
+  shares_ranges_ = corner_curves_ && corner_curves_->plan().order == slices().plan().order;
+  if (shares_ranges_) return;
   corner_curves::Volume curves(slices().plan(), columns.tolerance);
   if (curves.why_not().empty()) ranges_for_nodes_.emplace(std::move(curves));
 }
@@ -204,14 +206,16 @@ Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, st
                                               Scratch& scratch) const {
   const bool needs_gradient = !by_input.empty();
   std::optional<Integral<double>> found;
+  bool by_corner_curves = false;
   if (edges_) found = edges_->measure(inputs, scratch.edges, by_input);
   if (!found && corner_curves_) {
     found = corner_curves_->measure(inputs, scratch.corner_curves);
+    by_corner_curves = found.has_value();
     if (found && needs_gradient) corner_curves_->add_gradient(by_input, scratch.corner_curves);
   }
   // If there are outermost coordinates, samples are computed from slices of their own.
   if (found && (!needs_samples_ || has_outermost())) return *found;
-  if (found && place_between_ranges(inputs, scratch)) return *found;
+  if (found && place_between_ranges(inputs, by_corner_curves, scratch)) return *found;
   if (found) {  // the volume is known, and the slices only place the nodes of samples
     const Integral<double> by_slices = slices().measure(inputs, scratch.integral, {.evaluations = kMaxSlicesForNodes});
     // The error includes the part of the workspace that the slices, and therefore the samples, have missed.
@@ -229,7 +233,7 @@ Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, st
 }
 
 void ColumnVolume::place_nodes(std::span<const double> inputs, bool for_gradient, Scratch& scratch) const {
-  if (place_between_ranges(inputs, scratch)) return;
+  if (place_between_ranges(inputs, false, scratch)) return;
   if (for_gradient)
     slices().measure_for_gradient(inputs, scratch.integral);
   else
@@ -237,10 +241,16 @@ void ColumnVolume::place_nodes(std::span<const double> inputs, bool for_gradient
 }
 
 /// Places the nodes of the samples between the ends of the ranges of corner curves.
+/// @param is_measured  true: `scratch.corner_curves` holds the volume of this design by corner_curves_
 /// @return false if corner curves do not support the slices or the design
-bool ColumnVolume::place_between_ranges(std::span<const double> inputs, Scratch& scratch) const {
-  if (!ranges_for_nodes_ || !ranges_for_nodes_->find_ranges(inputs, scratch.ranges)) return false;
-  ranges_for_nodes_->find_critical_values(scratch.ranges, scratch.critical_values);
+bool ColumnVolume::place_between_ranges(std::span<const double> inputs, bool is_measured, Scratch& scratch) const {
+  if (shares_ranges_) {
+    if (!is_measured && !corner_curves_->find_ranges(inputs, scratch.corner_curves)) return false;
+    corner_curves_->find_critical_values(scratch.corner_curves, scratch.critical_values);
+  } else {
+    if (!ranges_for_nodes_ || !ranges_for_nodes_->find_ranges(inputs, scratch.ranges)) return false;
+    ranges_for_nodes_->find_critical_values(scratch.ranges, scratch.critical_values);
+  }
   slices().place_nodes(inputs, scratch.critical_values, scratch.integral);
   return true;
 }

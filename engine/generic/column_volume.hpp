@@ -59,7 +59,7 @@ class ColumnVolume {
   void choose_corner_curves(double tolerance);
   std::vector<double> inputs_of_default_design() const;
   Integral<double> measure_inside(std::span<const double> inputs, std::span<double> by_input, Scratch& scratch) const;
-  bool place_between_ranges(std::span<const double> inputs, Scratch& scratch) const;
+  bool place_between_ranges(std::span<const double> inputs, bool is_measured, Scratch& scratch) const;
 
   const Evaluation& e_;
   WorkspacePlan plan_;
@@ -76,8 +76,10 @@ class ColumnVolume {
   /// coordinates.
   std::optional<corner_curves::Volume> corner_curves_;
   /// Corner curves of the plan of slices(). The ends of their ranges divide the outer coordinate before the nodes of
-  /// samples are placed. Absent if no samples are needed, or if corner curves cannot integrate this plan.
+  /// samples are placed. Absent if no samples are needed, if corner curves cannot integrate this plan, or if the plan
+  /// is that of corner_curves_.
   std::optional<corner_curves::Volume> ranges_for_nodes_;
+  bool shares_ranges_ = false;  ///< true: the plan of slices() is that of corner_curves_
 };
 
 }  // namespace pkm::generic

@@ -27,6 +27,7 @@ struct CoordinateOrder {
   std::vector<std::size_t> outer;  ///< indices of the outer coordinates, the outermost first
   std::optional<std::size_t> v;    ///< index of the coordinate v; std::nullopt: slices are lines along z
   std::size_t z = 0;
+  bool operator==(const CoordinateOrder&) const = default;
 };
 
 using CoordinateRanges = std::vector<std::optional<std::array<double, 2>>>;
