@@ -4,10 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-
 #include "engine/geometry/singular.hpp"
+#include "engine/math/eigen_solvers.hpp"
 #include "engine/math/non_negative_least_squares.hpp"
 
 namespace pkm {

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include <Eigen/Eigenvalues>
-
 #include "engine/core/formatted.hpp"
 #include "engine/export/xml_text.hpp"
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm {
 namespace {
@@ -36,7 +35,7 @@ Minimum minimum_of(const MultibodyModel& model) {
 /// @return true if a moment has changed
 bool make_physical(Eigen::Matrix3d& inertia, double minimum) {
   constexpr double kRounding = 1e-9;  // relative allowance for rounding errors
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(inertia)};
   Vector3d moments = solver.eigenvalues();  // in ascending order
   moments = moments.cwiseMax(minimum);
   if (const double lack = moments[2] - moments[0] - moments[1]; lack > 0)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm::generic {
 namespace {
@@ -34,7 +34,7 @@ Plane plane_of(const std::vector<Vector3d>& points, const std::array<bool, 3>& i
     scatter.col(k).setZero();
     scatter(k, k) = above_all_eigenvalues;
   }
-  return {mean, Eigen::SelfAdjointEigenSolver<Matrix3d>(scatter).eigenvectors().col(0)};
+  return {mean, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(scatter)).eigenvectors().col(0)};
 }
 
 /// For a planar mechanism, the coordinate axis that is normal to its plane: its platform does not translate along this

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
+#include "engine/math/eigen_solvers.hpp"
 
 namespace pkm {
 namespace {
