@@ -66,6 +66,5 @@ PKMOPT_LIBRARY=$(dirname -- "$program")/../lib/libpkmopt.so.0  # of the program'
 export PKMOPT_LIBRARY
 PKM_DOCS_VERSION=${built#pkmopt } PKM_DOCS_XML=$out/xml \
   /usr/bin/sphinx-build -q -W -n --keep-going -b html -d "$out/doctrees" docs "$out/html"
-cp -R -- experiments/mechanisms/pictures "$out/html/reference"  # used by <img> in an included README
 /usr/bin/python3 "$root/docs/links.py" "$out/html"
 echo "$out/html/index.html"

@@ -2,6 +2,7 @@
 
 docs/build.sh runs Sphinx in a folder with a copy of docs/ and links to the rest of the repository."""
 import os
+import re
 from pathlib import Path
 
 from docutils import nodes
@@ -54,45 +55,74 @@ copybutton_only_copy_prompt_lines = True
 pygments_style = "xcode"  # sufficient contrast on the background of site.css
 pygments_dark_style = "github-dark"
 
-# Pages of the site that include a file of the repository: file, or file#heading -> page#heading.
+# Files of the repository that are pages of the site as a whole. The pages exist on the site only.
+FILES = {
+    "CHANGELOG.md": "changes",
+    "CONTRIBUTING.md": "contributing",
+    "benchmarks/README.md": "benchmarks",
+    "engine/accelerators/crr_cru/README.md": "theory/derivation-3crr-r-cru",
+    "engine/accelerators/four_ppa_two_par/README.md": "theory/derivation-4ppa-2par",
+    "engine/accelerators/hybrid/README.md": "theory/derivation-2t1r-p-hybrid",
+    "engine/expression/README.md": "theory/expression",
+    "engine/generic/corner_curves/README.md": "theory/derivation-corner-curves",
+    "engine/generic/edges/README.md": "theory/derivation-edges",
+    "engine/workspace/bounds/README.md": "theory/derivation-bounds",
+    "experiments/slurm/README.md": "slurm",
+    "tests/README.md": "tests",
+}
+for file, page in FILES.items():
+    name = os.path.relpath(f"../{file}", os.path.dirname(page) or ".")
+    Path(f"{page}.md").write_text(f"```{{include}} {name}\n:relative-images:\n```\n")
+
+# Other files that pages link to: file, or file#heading -> page, or page#heading, of the site.
 PAGES = {
     "README.md": "index",
-    "engine/accelerators/four_ppa_two_par/README.md": "theory/4ppa-2par",
+    "engine/public_headers.txt": "reference/cpp/index",
     "engine/storage/README.md": "reference/study-file",
-    "experiments/README.md": "reference/studies",
-    "experiments/README.md#certified-bounds": "theory/certain",
-    "experiments/README.md#clearance": "theory/clearance#clearance-of-links",
-    "experiments/README.md#models-for-simulation-programs": "reference/exports#models-for-simulation-programs",
-    "experiments/README.md#motions": "reference/motions",
-    "experiments/README.md#the-hybrid-robot": "theory/2t1r-p-hybrid#the-paper-and-this-program",
-    "experiments/README.md#workspaces-and-tables-for-other-programs": "reference/exports",
-    "experiments/catalogue.md": "reference/catalogue/index",
-    "experiments/keys.md": "reference/keys",
-    "experiments/mechanisms": "reference/mechanisms",
-    "experiments/mechanisms/README.md": "reference/mechanisms",
-    "experiments/slurm/README.md": "tutorials/cluster",
-    "benchmarks/README.md": "speed",
-    "CHANGELOG.md": "changes",
+    "experiments/README.md": "reference/study/examples",
+    "experiments/mechanisms": "reference/mechanism/examples",
+    "experiments/mechanisms/README.md": "reference/mechanism/examples",
 }
 
 
-def links_of_included_files(app, document):
-    """Resolve links in included READMEs, which are relative to the README.
+def page_of(file, heading):
+    """Return (page, heading) of the site that shows a file of the repository; (None, "") if there is none."""
+    notebook = re.fullmatch(r"docs/(notebooks/\S+)\.ipynb", file)
+    if notebook:
+        return notebook[1], ""
+    if file in FILES:
+        return FILES[file], heading
+    page = PAGES.get(f"{file}#{heading}") or PAGES.get(file)
+    return tuple(page.split("#")) if page and "#" in page else (page, "")
 
-    They are redirected to the page that includes the target, or to a copy of the target if no page includes it."""
+
+def links_to_files(app, document):
+    """Redirect links to files of the repository, such as READMEs, to the page of the site that shows the file.
+
+    Links in included READMEs are relative to the README. A file that no page shows is copied to the site."""
     root = Path(app.srcdir).parent
-    for node in list(document.findall(addnodes.pending_xref)):
+    folder = os.path.dirname(app.env.docname)
+    for node in list(document.findall(lambda n: isinstance(n, (addnodes.pending_xref, addnodes.download_reference)))):
         source = Path(str(node.source).split(":")[0])
-        if node.get("reftype") != "myst" or source.is_relative_to(app.srcdir):
+        if node.get("reftype") != "myst":
             continue
+        included = not source.is_relative_to(app.srcdir)
         path, _, heading = node["reftarget"].partition("#")
-        file = os.path.relpath(os.path.normpath(source.parent / path) if path else source, root)
-        page = PAGES.get(f"{file}#{heading}") or PAGES.get(file)
-        if page:
-            name, _, anchor = page.partition("#")
-            relative = os.path.relpath(name, os.path.dirname(app.env.docname) or ".")
-            node["reftarget"] = f"{relative}.md" + (f"#{anchor}" if anchor else "")
-        elif (root / file).is_file():
+        base = source.parent if included else Path(app.srcdir) / folder
+        file = os.path.relpath(os.path.normpath(base / path) if path else source, root)
+        page, anchor = page_of(file, heading)
+        copied = isinstance(node, addnodes.download_reference)
+        if page and (included or path):
+            target = os.path.relpath(page, folder or ".") + ".md" + (f"#{anchor}" if anchor else "")
+            if not copied:
+                node["reftarget"] = target
+                continue
+            link = addnodes.pending_xref(refdoc=app.env.docname, reftarget=target, reftype="myst", refdomain=None,
+                                         refexplicit=True, refwarn=True)
+            link.source, link.line = node.source, node.line
+            link += [nodes.inline("", child.astext(), classes=["xref", "myst"]) for child in node.children]
+            node.replace_self(link)
+        elif not copied and (included or not file.startswith("docs/")) and (root / file).is_file():
             copy = addnodes.download_reference(refdoc=app.env.docname, reftarget=f"/../{file}", refdomain=None,
                                                reftype="myst", refexplicit=True, refwarn=False)
             copy += [nodes.literal("", child.astext(), classes=["xref", "download"]) for child in node.children]
@@ -100,4 +130,4 @@ def links_of_included_files(app, document):
 
 
 def setup(app):
-    app.connect("doctree-read", links_of_included_files, priority=100)
+    app.connect("doctree-read", links_to_files, priority=100)

@@ -67,10 +67,6 @@ def declared_in(header, xml):
 
 
 def write_pages(repository, docs, xml):
-    index = ("# The C++ library\n\nThe public headers, with the paths to use in `#include`. Only these are meant for "
-             "other programs: the package also installs the headers that they include, but those may change in any "
-             "version. [As a library](../../install.md#as-a-library) lists the CMake targets; "
-             "[a mechanism in C++](../../tutorials/own-mechanism.md#in-c) shows a complete program.\n\n")
     toc = []
     for title, group in public_headers(repository).items():
         name = title.lower().replace(" ", "-").replace("+", "p")
@@ -80,7 +76,8 @@ def write_pages(repository, docs, xml):
             text += f"## {header}\n\n" + markdown_of(first_comment(repository / header))
             text += "".join(declared_in(header, xml))
         (docs / f"{name}.md").write_text(text)
-    (docs / "index.md").write_text(index + "```{toctree}\n:maxdepth: 2\n\n" + "\n".join(toc) + "\n```\n")
+    with open(docs / "index.md", "a") as index:
+        index.write("\n```{toctree}\n:maxdepth: 2\n\n" + "\n".join(toc) + "\n```\n")
 
 
 def main():
@@ -89,7 +86,6 @@ def main():
         return
     repository, docs, xml = map(Path, sys.argv[1:])
     pages = docs / "reference" / "cpp"
-    pages.mkdir(exist_ok=True)
     write_pages(repository, pages, xml)
 
 

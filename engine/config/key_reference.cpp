@@ -126,7 +126,7 @@ void add_file(const std::string& title, const std::string& kind, const TableSpec
 std::string keys_markdown() {
   std::string text =
       "# Keys\n\nAll keys of the TOML files that pkmopt reads. Created by `pkmopt schema --markdown > "
-      "experiments/keys.md`.\n\nA number is in SI units, or text with a unit (`\"200 mm\"`). A formula is a number, "
+      "docs/reference/keys.md`.\n\nA number is in SI units, or text with a unit (`\"200 mm\"`). A formula is a number, "
       "text "
       "with a unit, or a formula of names. `NAME` stands for names of coordinates, parameters and so on; `[]` for "
       "every "

@@ -6,7 +6,7 @@
 
 namespace pkm {
 
-/// The content of experiments/keys.md.
+/// The content of docs/reference/keys.md.
 std::string keys_markdown();
 
 }  // namespace pkm

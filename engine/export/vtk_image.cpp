@@ -20,7 +20,7 @@ std::vector<double> first_axis_fastest(const WorkspaceField& field, const std::a
   return reordered;
 }
 
-/// The bytes of a file of the VTKHDF format; its layout is described in engine/storage/README.md.
+/// The bytes of a file of the VTKHDF format; docs/reference/study-file/images.md describes its layout.
 std::string vtk_image(const WorkspaceFields& workspace, const MechanismInfo& info, std::span<const double> parameters,
                       const std::string& title) {
   const std::string root = "/VTKHDF", points = root + "/PointData";

@@ -26,7 +26,7 @@ Json catalogues_json(const Catalogues& catalogues);
 // The following functions convert the JSON of mechanism_json() and catalogues_json() to text that people can read.
 /// Full description of one entry: one line for each single value, one table for each list.
 std::string entry_text(const Json& entry);
-/// All entries of all catalogues in Markdown: the content of experiments/catalogue.md.
+/// All entries of all catalogues in Markdown: the content of docs/reference/catalogue.md.
 std::string catalogues_markdown(const Json& catalogues);
 /// Text of a value for a table cell: elements of lists are separated by semicolons; "-" for null.
 std::string cell_text(const Json& value);

@@ -140,7 +140,7 @@ std::string catalogues_markdown(const Json& catalogues) {
   std::string text =
       "# Names that a study can use\n\n"
       "All mechanisms, objectives, constraints and optimisers with their options, which are keys of their tables in a "
-      "study.\nCreated by `pkmopt list --markdown > experiments/catalogue.md`.\n\n";
+      "study.\nCreated by `pkmopt list --markdown > docs/reference/catalogue.md`.\n\n";
   for (const auto& [kind, entries] : catalogues.items())
     for (const auto& entry : entries) {
       const Details found = details(entry);

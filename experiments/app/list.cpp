@@ -135,7 +135,7 @@ void add_list(CLI::App& app, Session& session) {
   command.add_flag("--json", arguments.json, "Print one JSON object with the details of all entries");
   command
       .add_flag("--markdown", arguments.markdown,
-                "Print the details of all entries in Markdown, as in experiments/catalogue.md")
+                "Print the details of all entries in Markdown, as in docs/reference/catalogue.md")
       ->excludes("KIND")
       ->excludes("--json");
   command.add_flag("--file", arguments.file, "Print the file of a mechanism of the catalogue, a start for your own")

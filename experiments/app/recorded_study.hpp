@@ -1,5 +1,5 @@
 // Rebuilds the study from the contents of a study file. All commands that read study files use these functions, so that
-// a file whose text and records differ is treated in the same way everywhere (engine/storage/README.md).
+// a file whose text and records differ is treated in the same way everywhere (docs/reference/study-file/versions.md).
 #pragma once
 
 #include <optional>

@@ -49,7 +49,7 @@ void add_schema(CLI::App& app, Session& session) {
       [&session](const SchemaArguments& given) { print_schema(given, session); });
   add_option(command, "FORMAT", arguments.kind, "Kind of file: study (default), mechanism, motion, task or motors");
   command.add_flag("--markdown", arguments.markdown,
-                   "Print all keys of all kinds of files in Markdown, as in experiments/keys.md");
+                   "Print all keys of all kinds of files in Markdown, as in docs/reference/keys.md");
 }
 
 }  // namespace pkm

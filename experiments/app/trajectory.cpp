@@ -160,7 +160,7 @@ void add_trajectory(CLI::App& app, Session& session) {
       app, session, "trajectory", "Evaluate a motion: joints, conditioning and, if masses are known, forces and power.",
       "Limits are those of the study; without a study, only those that follow from the design, such as joint ranges.\n"
       "Samples that violate a limit are marked with the reason, and the exit code is 1. The format of motion files is\n"
-      "described in experiments/README.md.\n"
+      "described in docs/reference/motion/file.md.\n"
       "Example: pkmopt trajectory 3crr-r-cru --motion experiments/3crr-r-cru/motions/pick-and-place.toml --csv f.csv",
       trajectory);
   add_option(command, "--motion MOTION.toml", arguments.motion,

@@ -253,15 +253,15 @@ TEST(CliList, ShowsAllDetailsOfAnEntry) {
 
 TEST(CliList, CatalogueMdIsUpToDate) {
   std::ostringstream file;
-  file << std::ifstream(std::filesystem::path(PKM_EXPERIMENTS) / "catalogue.md").rdbuf();
-  EXPECT_EQ(pkmopt({"list", "--markdown"}).out, file.str()) << "pkmopt list --markdown > experiments/catalogue.md";
+  file << std::ifstream(std::filesystem::path(PKM_EXPERIMENTS) / "../docs/reference/catalogue.md").rdbuf();
+  EXPECT_EQ(pkmopt({"list", "--markdown"}).out, file.str()) << "pkmopt list --markdown > docs/reference/catalogue.md";
   EXPECT_EQ(pkmopt({"list", "objectives", "--markdown"}).exit_code, 2);
 }
 
 TEST(CliSchema, KeysMdIsUpToDate) {
   std::ostringstream file;
-  file << std::ifstream(std::filesystem::path(PKM_EXPERIMENTS) / "keys.md").rdbuf();
-  EXPECT_EQ(pkmopt({"schema", "--markdown"}).out, file.str()) << "pkmopt schema --markdown > experiments/keys.md";
+  file << std::ifstream(std::filesystem::path(PKM_EXPERIMENTS) / "../docs/reference/keys.md").rdbuf();
+  EXPECT_EQ(pkmopt({"schema", "--markdown"}).out, file.str()) << "pkmopt schema --markdown > docs/reference/keys.md";
 }
 
 TEST(CliSchema, KindsAreTheStudyAndThreeOthers) {

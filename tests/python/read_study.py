@@ -2,7 +2,7 @@
 
 read_study.py values FILE         prints values of the sample study bit by bit, one item per line
 read_study.py labels FILE         checks attributes and layout of every dataset
-read_study.py snippets FILE README  runs the Python examples of the README on the file
+read_study.py snippets FILE PAGE  runs the Python examples of a page on the file
 read_study.py contiguous FILE     rewrites one dataset in h5py's default layout, big-endian
 read_study.py put FILE PATH INDEX VALUE  changes one value
 read_study.py shorten FILE PATH   removes the last row of a dataset

@@ -80,7 +80,7 @@ TEST_F(H5py, FindsColumnNamesThatDoNotFitIntoAnAttribute) {
 }
 
 TEST_F(H5py, RunsTheExamplesOfTheDocumentation) {
-  EXPECT_THAT(python("snippets", "'" + std::string(PKM_TEST_DATA) + "/../../engine/storage/README.md'"),
+  EXPECT_THAT(python("snippets", "'" + std::string(PKM_TEST_DATA) + "/../../docs/reference/study-file/reading.md'"),
               testing::EndsWith("\n4 snippets\n"));
 }
 
