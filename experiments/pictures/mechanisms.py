@@ -4,7 +4,7 @@ The links of the nominal design at its initial pose are read from the page that 
 numpy. For the READMEs in engine/accelerators, and for all files in experiments/mechanisms:
   mechanisms.py build/quickstart/bin/pkmopt 4ppa-2par engine/accelerators/four_ppa_two_par/mechanism.svg
   mechanisms.py build/quickstart/bin/pkmopt experiments/mechanisms
-"""
+and for one file, such as experiments/mechanisms/frames/h4.toml, into experiments/mechanisms/pictures/h4.svg."""
 import base64
 import html
 import json
@@ -75,8 +75,8 @@ def links_of(program, mechanism):
         text = page.read_text()
     start = text.index('"mechanism":{"mode"') + len('"mechanism":')
     design = json.JSONDecoder().raw_decode(text[start:])[0]["designs"][0]
-    index = int(np.sum(unpack(design["drawn"])[: design["start"]]))
-    at = np.stack([unpack(c).reshape(-1, design["ends"])[index] for c in design["at"]], axis=1)
+    index = int(np.sum(unpack(design["assembles"])[: design["initial_pose"]]))
+    at = np.stack([unpack(c).reshape(-1, design["end_count"])[index] for c in design["end_positions"]], axis=1)
     return [(k["name"], k["part"], k["radius"], at[[k["from"], k["to"]]]) for k in design["links"]]
 
 
@@ -146,4 +146,4 @@ if __name__ == "__main__":
         for file in sorted(Path(mechanism).glob("*.toml")):
             Path(mechanism, "pictures", file.stem + ".svg").write_text(picture(file.stem, links_of(program, str(file))))
     else:
-        Path(out[0]).write_text(picture(mechanism, links_of(program, mechanism), LENGTHS.get(mechanism, ())))
+        Path(out[0]).write_text(picture(Path(mechanism).stem, links_of(program, mechanism), LENGTHS.get(mechanism, ())))
