@@ -18,7 +18,7 @@ copyright = f"2026, the pkmopt authors. Version {release}"
 extensions = ["myst_parser", "breathe", "sphinx.ext.mathjax", "sphinx_copybutton", "sphinx.ext.autodoc"]
 nitpicky = True
 
-myst_enable_extensions = ["deflist", "dollarmath", "substitution"]
+myst_enable_extensions = ["deflist", "dollarmath", "substitution", "html_image"]
 myst_substitutions = {"version": version, "release": release, "state": "released" if released else "not released yet"}
 myst_heading_anchors = 4
 

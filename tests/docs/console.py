@@ -8,8 +8,9 @@ A block ```console contains commands after `$ ` and their output, from stdout an
 after the other in one temporary folder. In it, `pkmopt` is PROGRAM, `pkmopt-check-proof` is the program beside it,
 `python3` and `octave-cli` find the repository's packages pkmopt and the library of the same build, and `experiments`,
 `benchmarks` and `tests` are links to those of the repository. A block ```{code-block} with `:caption: NAME`, or any
-block below a line `<!-- NAME -->`, is written to the file NAME before the commands that follow it. A command has to
-succeed unless `$ echo $?` follows. It runs on two threads.
+block below a line `<!-- NAME -->`, is written to the file NAME before the commands that follow it. If NAME is a file of
+the repository, such as experiments/4ppa-2par/rails.toml, the block has to be a part of that file instead. A command has
+to succeed unless `$ echo $?` follows. It runs on two threads.
 
 The output has to match the page. Whitespace and values that differ from run to run are not compared: times (a number
 before ns, us, ms, s, min or h), numbers of threads, shares of time ("59 % on", "0.0 % of the time"), file sizes (kB,
@@ -123,7 +124,10 @@ def find_faults(page, program, write):
     with tempfile.TemporaryDirectory() as scratch:
         folder = Folder(Path(scratch), program)
         for begin, end, language, caption in blocks_of(lines):
-            if caption:
+            if caption and "/" in caption and (REPOSITORY / caption).is_file():
+                if "\n".join(lines[begin:end]) not in (REPOSITORY / caption).read_text():
+                    faults.append(f"{page}:{begin}: the block is not a part of {caption}")
+            elif caption:
                 (folder.path / caption).write_text("\n".join(lines[begin:end]) + "\n")
             if language != "console":
                 continue
