@@ -4,6 +4,7 @@
 
 #include "engine/config/study_draft.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/core/display_unit.hpp"
 #include "engine/core/printable.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
@@ -23,17 +24,17 @@ void write_parameters(std::ostream& out, const Study& study) {
   for (std::size_t v = 0; v < parts.varies.size(); ++v) {
     const std::size_t i = parts.varies[v];
     const Variable& variable = parts.space[v];
-    std::string bounds = format_range(variable.lower, variable.upper, variable.unit);
+    std::string bounds = display_range(variable.lower, variable.upper, variable.unit);
     const auto choice = std::ranges::find(parts.choices, i, &Choice::parameter);
     if (choice != parts.choices.end())
       bounds = "one of " + join(choice->rows);
     else if (variable.step > 0)
-      bounds += " in steps of " + with_degrees(variable.step, variable.unit);
+      bounds += " in steps of " + display_text(variable.step, variable.unit);
     std::string base;
     if (study.baseline) {
       const double value = (*study.baseline)[i];
       base = "baseline " +
-             (choice == parts.choices.end() ? with_degrees(value, variable.unit) : choice->rows[choice->row(value)]);
+             (choice == parts.choices.end() ? display_text(value, variable.unit) : choice->rows[choice->row(value)]);
       if (value < variable.lower || value > variable.upper) base += " (outside the bounds)";
     }
     varying.push_back({variable.name, bounds, base, known[i].meaning});
@@ -43,8 +44,8 @@ void write_parameters(std::ostream& out, const Study& study) {
     const double value = parts.parameters[i];
     std::string note = mark(value == known[i].nominal);
     if (study.baseline && (*study.baseline)[i] != value)
-      note += (note.empty() ? "" : " ") + ("baseline " + with_degrees((*study.baseline)[i], known[i].unit));
-    fixed.push_back({known[i].name, with_degrees(value, known[i].unit), note, known[i].meaning});
+      note += (note.empty() ? "" : " ") + ("baseline " + display_text((*study.baseline)[i], known[i].unit));
+    fixed.push_back({known[i].name, display_text(value, known[i].unit), note, known[i].meaning});
   }
   out << format_titled_table("variables", varying);
   out << format_titled_table("fixed parameters", fixed);
@@ -55,8 +56,8 @@ std::string fixed_text(const FixedCoordinate& fixed, const std::string& unit) {
   using Kind = FixedCoordinate::Kind;
   if (fixed.kind == Kind::default_value) return "default of each design";
   if (fixed.kind == Kind::integrated) return "integrated over its range";
-  if (fixed.kind == Kind::value) return with_degrees(fixed.value, unit);
-  return join_texts(fixed.values, [&unit](double value) { return with_degrees(value, unit); });
+  if (fixed.kind == Kind::value) return display_text(fixed.value, unit);
+  return join_texts(fixed.values, [&unit](double value) { return display_text(value, unit); });
 }
 
 std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& plan) {
@@ -76,7 +77,7 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& pla
     if (plan.columns() && sweep.swept[k] != sweep.column)
       nodes.push_back(axis.name + " = " + std::to_string(plan.columns()->nodes[nodes.size()]));
     if (const auto& given = plan.box())
-      box.push_back(axis.name + " = " + format_range((*given)[k][0], (*given)[k][1], axis.unit));
+      box.push_back(axis.name + " = " + display_range((*given)[k][0], (*given)[k][1], axis.unit));
   }
   for (std::size_t k = 0; k < plan.fixed.size(); ++k) {
     const FixedCoordinate& fixed = plan.fixed[k];
@@ -93,7 +94,7 @@ std::vector<Row> survey_rows(const MechanismInfo& info, const WorkspacePlan& pla
   if (plan.home) {
     std::vector<std::string> home;
     for (std::size_t k = 0; k < sweep.swept.size(); ++k)
-      home.push_back(swept[k] + " = " + with_degrees((*plan.home)[k], coordinate(sweep.swept[k]).unit));
+      home.push_back(swept[k] + " = " + display_text((*plan.home)[k], coordinate(sweep.swept[k]).unit));
     rows.push_back({"home", join(home) + "; only the component that holds this pose counts"});
   }
   if (const ColumnOptions* const columns = plan.columns()) {
@@ -120,7 +121,7 @@ std::vector<Row> limit_rows(const Study& study) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto& limit = known[i];
     const char* const inactive = "(default: inactive)";
-    std::string value = with_degrees(limit.inactive, limit.unit), origin = inactive;
+    std::string value = display_text(limit.inactive, limit.unit), origin = inactive;
     if (const Parameter* own = find_named(parts.mechanism->info().parameters, limit.name)) {
       value = "the parameter";
       origin = "(default: " + own->name + " of the design)";
@@ -128,7 +129,7 @@ std::vector<Row> limit_rows(const Study& study) {
     if (!study.limit_origins[i].empty()) {
       const std::optional<double>& given = parts.plan.limits.given[i];
       const bool is_default = given && *given == limit.inactive && origin == inactive;
-      value = given ? with_degrees(*given, limit.unit) : limit.derivation;
+      value = given ? display_text(*given, limit.unit) : limit.derivation;
       origin = "from " + study.limit_origins[i] + (is_default ? std::string(" ") + inactive : "");
     }
     rows.push_back({limit.name, value, origin, limit.meaning});
@@ -163,8 +164,8 @@ std::vector<Row> tolerance_rows(const Study& study) {
   std::vector<Row> rows = {{"samples", std::to_string(model.samples)}};
   for (const ParameterError& error : model.errors) {
     const std::string& unit = parameters[error.parameter].unit;
-    rows.push_back({error.name, "+-" + with_degrees(error.bound, unit),
-                    error.sigma == 0 ? "uniform" : "normal, standard deviation " + with_degrees(error.sigma, unit)});
+    rows.push_back({error.name, "+-" + display_text(error.bound, unit),
+                    error.sigma == 0 ? "uniform" : "normal, standard deviation " + display_text(error.sigma, unit)});
     for (const ErrorGroup& group : model.groups)
       if (group.errors.size() > 1 && contains(group.errors, static_cast<std::size_t>(&error - model.errors.data())))
         rows.back().back() += ", correlated with others";

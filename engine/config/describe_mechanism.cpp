@@ -8,7 +8,9 @@
 #include "engine/config/mechanism_frames.hpp"
 #include "engine/config/mechanism_mobility.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/core/display_unit.hpp"
 #include "engine/core/error.hpp"
+#include "engine/core/formatted.hpp"
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
 #include "engine/core/unit.hpp"
@@ -48,6 +50,42 @@ std::string why_no_feasible_pose(const Mechanism& mechanism, std::span<const dou
                         : "satisfied at no pose: " + names_text(never));
 }
 
+/// Explains why the drives do not determine all coordinates: drives that act along one line, i.e. whose rows of the
+/// Jacobian are proportional, drives without effect or, if there are none, the coordinates that are undetermined.
+std::string why_rank_deficient(const MechanismInfo& info, const Eigen::MatrixXd& J, std::size_t rank) {
+  constexpr double kZero = 1e-9;  // relative
+  const auto name = [&info](Eigen::Index row) { return info.joints[static_cast<std::size_t>(row)].name; };
+  const double size = J.rowwise().norm().maxCoeff();
+  std::vector<std::string> causes;
+  std::vector<bool> listed(static_cast<std::size_t>(J.rows()));
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    if (J.row(i).norm() <= kZero * size) causes.push_back(name(i) + " does not move the platform");
+    if (J.row(i).norm() <= kZero * size || listed[static_cast<std::size_t>(i)]) continue;
+    std::vector<std::string> group = {name(i)};
+    for (Eigen::Index k = i + 1; k < J.rows(); ++k) {
+      const double along = J.row(k).dot(J.row(i)) / J.row(i).squaredNorm();
+      if (J.row(k).norm() <= kZero * size || (J.row(k) - along * J.row(i)).norm() > kZero * J.row(k).norm()) continue;
+      listed[static_cast<std::size_t>(k)] = true;
+      group.push_back(name(k));
+    }
+    if (group.size() > 1) causes.push_back(join(group) + " act along one line");
+  }
+  if (!causes.empty()) return join(causes, "; ");
+  const Eigen::JacobiSVD<Eigen::MatrixXd> decomposition(J, Eigen::ComputeFullV);
+  const Eigen::MatrixXd free = decomposition.matrixV().rightCols(J.cols() - static_cast<Eigen::Index>(rank));
+  std::vector<std::string> undetermined;
+  for (std::size_t i = 0; i < info.coordinates.size(); ++i)
+    if (free.row(static_cast<Eigen::Index>(i)).norm() > kZero * free.norm())
+      undetermined.push_back(info.coordinates[i].name);
+  return "it can move along a combination of " + join(undetermined);
+}
+
+/// Text of a computed length or angle.
+std::string four_digits(double value, const std::string& unit) {
+  const DisplayUnit shown = display_unit(unit);
+  return formatted("%.4g ", value / shown.size) + shown.name;
+}
+
 /// Writes a feasible pose in the middle of the workspace. If no pose is feasible, writes the margins that are negative
 /// at all sampled poses.
 void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span<const double> parameters) {
@@ -65,9 +103,9 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
   const PoseReport report = mechanism.inspect(parameters, *nominal, info.modes.front(), no_limits(info));
   std::vector<std::string> at, joints;
   for (std::size_t i = 0; i < nominal->size(); ++i)
-    at.push_back(info.coordinates[i].name + " = " + with_degrees((*nominal)[i], info.coordinates[i].unit));
+    at.push_back(info.coordinates[i].name + " = " + four_digits((*nominal)[i], info.coordinates[i].unit));
   for (std::size_t i = 0; i < info.joints.size(); ++i)
-    joints.push_back(info.joints[i].name + " = " + with_degrees((*report.joints)[i], info.joints[i].unit));
+    joints.push_back(info.joints[i].name + " = " + four_digits((*report.joints)[i], info.joints[i].unit));
   out << "  " << join(at) << "\n  " << join(joints) << '\n';
   if (!report.J) {
     out << "  singular: the joint speeds are not determined by the rates of the coordinates\n";
@@ -78,7 +116,8 @@ void write_nominal_pose(std::ostream& out, const Mechanism& mechanism, std::span
     for (Eigen::Index j = 0; j < J.cols(); ++j)
       J(i, j) = (*report.J)(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
   const auto rank = static_cast<std::size_t>(J.jacobiSvd().setThreshold(1e-9).rank());
-  out << "  mobility: " << mobility_text(mechanism, parameters, *nominal, rank) << '\n';
+  const std::string cause = rank < info.coordinates.size() ? why_rank_deficient(info, J, rank) : "";
+  out << "  mobility: " << mobility_text(mechanism, parameters, *nominal, rank, cause) << '\n';
 }
 
 /// The reason why the masses of the default design are invalid; "" if they are valid.
@@ -146,7 +185,7 @@ std::string describe_mechanism(const Mechanism& mechanism) {
   std::vector<std::vector<std::string>> parameters, coordinates, joints, limits;
   std::vector<double> nominal;
   for (const Parameter& p : info.parameters) {
-    parameters.push_back({p.name, with_degrees(p.nominal, p.unit), format_range(p.lower, p.upper, p.unit), p.meaning});
+    parameters.push_back({p.name, display_text(p.nominal, p.unit), display_range(p.lower, p.upper, p.unit), p.meaning});
     nominal.push_back(p.nominal);
   }
   const auto ranges = mechanism.ranges(nominal);
@@ -154,15 +193,15 @@ std::string describe_mechanism(const Mechanism& mechanism) {
     const AxisInfo& axis = info.coordinates[i];
     const auto swept =
         std::ranges::find(info.sweeps.front().swept, static_cast<int>(i)) != info.sweeps.front().swept.end();
-    coordinates.push_back({axis.name, axis.unit, swept ? "swept" : "fixed",
-                           ranges ? format_range((*ranges)[i][0], (*ranges)[i][1], axis.unit) : "no box"});
+    coordinates.push_back({axis.name, display_unit(axis.unit).name, swept ? "swept" : "fixed",
+                           ranges ? display_range((*ranges)[i][0], (*ranges)[i][1], axis.unit) : "no box"});
   }
   for (std::size_t i = 0; i < info.joints.size(); ++i)
-    joints.push_back(
-        {info.joints[i].name, info.joints[i].unit, i < info.closed_forms.size() ? info.closed_forms[i] : ""});
+    joints.push_back({info.joints[i].name, display_unit(info.joints[i].unit).name,
+                      i < info.closed_forms.size() ? info.closed_forms[i] : ""});
   for (const LimitInfo& limit : info.limits)
     limits.push_back(
-        {limit.name, "inactive " + with_degrees(limit.inactive, limit.unit), limit.derivation, limit.meaning});
+        {limit.name, "inactive " + display_text(limit.inactive, limit.unit), limit.derivation, limit.meaning});
   out << format_titled_table("parameters", parameters);
   out << format_titled_table("coordinates", coordinates);
   out << frames_text(mechanism);

@@ -16,17 +16,17 @@ namespace {
 
 std::string in_unit(const std::string& unit) { return unit == "1" ? "dimensionless" : "in " + unit; }
 
-constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_. ";
 
 /// The name of an entry within its kind: the value of `name`, otherwise the type. Names are keys of the study file and
 /// of JSON.
 std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
   const auto given = table.find("name");
   std::string name = given ? given->text("text") : type;
-  // A type that is the name of a [[design]] of the mechanism file can contain blanks.
-  if (!given) std::ranges::replace(name, ' ', '-');
-  if (name.empty() || name.find_first_not_of(kLetters) != std::string::npos)
-    throw given->error("a name of letters, digits, '-', '_' and '.'");
+  if (!given) std::ranges::replace(name, ' ', '-');  // type is the name of a [[design]] of the mechanism file
+  const bool has_outer_blanks = name.starts_with(' ') || name.ends_with(' ');
+  if (name.empty() || has_outer_blanks || name.find_first_not_of(kLetters) != std::string::npos)
+    throw given->error("a name of letters, digits, blanks between them, '-', '_' and '.'");
   if (find_named(before, name))
     throw table.refusal("the name '" + name + "' is already used; give this one another name with name = \"...\"");
   return name;

@@ -8,12 +8,13 @@
 namespace pkm {
 
 std::string mobility_text(const Mechanism& mechanism, std::span<const double> parameters, const Pose<double>& pose,
-                          std::size_t rank) {
+                          std::size_t rank, const std::string& cause) {
   constexpr std::size_t kBody = 6;  // number of degrees of freedom of a rigid body in space
   const MechanismInfo& info = mechanism.info();
   const std::size_t coordinates = info.coordinates.size();
   const std::string loose =
-      rank < coordinates ? ": the platform can move while the drives are locked, or the pose is singular" : "";
+      rank < coordinates ? ": the platform can move while the drives are locked, or the pose is singular; " + cause
+                         : "";
   const auto determined = [&](std::size_t degrees) {
     return "the drives determine " + std::to_string(rank) + " of " + std::to_string(degrees) +
            " degrees of freedom at this pose" + loose;

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <new>
-#include <numeric>
 #include <system_error>
 
 #include "engine/core/printable.hpp"
@@ -33,16 +32,22 @@ std::string prefix(const SourceLocation& place) {
   return text;
 }
 
-/// Levenshtein distance of two texts, by dynamic programming that stores one row of the table.
+char lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// Twice the Levenshtein distance of two texts, in which letters that differ in case only count as half a substitution.
+/// Dynamic programming that stores one row of the table.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const auto substitution = [](char x, char y) -> std::size_t {
+    return x == y ? 0 : lower_case(x) == lower_case(y) ? 1 : 2;
+  };
   std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t j = 0; j < row.size(); ++j) row[j] = 2 * j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     std::size_t diagonal = row[0];
-    row[0] = i;
+    row[0] = 2 * i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      row[j] = std::min({above + 2, row[j - 1] + 2, diagonal + substitution(a[i - 1], b[j - 1])});
       diagonal = above;
     }
   }
@@ -79,12 +84,12 @@ std::string message_of(const std::exception& error) {
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
   std::string best;
   if (name.size() > kMaxName) return best;
-  // A known name at this edit distance or more is unlikely to be the intended one.
-  std::size_t best_distance = 1 + std::max<std::size_t>(1, name.size() / 2);
+  // At this distance or more, a known name is no likely correction.
+  std::size_t best_distance = 2 + 2 * std::max<std::size_t>(1, name.size() / 2);
   for (const auto& candidate : known) {
     if (candidate.size() > 2 * kMaxName) continue;  // a name this long would not fit into a message
     std::size_t distance = edit_distance(name, candidate);
-    if (name.size() > 1 && candidate.starts_with(name)) distance = std::min<std::size_t>(distance, 1);
+    if (name.size() > 1 && candidate.starts_with(name)) distance = std::min<std::size_t>(distance, 2);
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;

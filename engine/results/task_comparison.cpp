@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <set>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/core/display_unit.hpp"
 #include "engine/core/error.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/results/task_motion.hpp"
@@ -272,9 +272,8 @@ TaskComparison compare_in_task(const Task& task, const std::vector<TaskRobot>& r
 }
 
 std::pair<double, std::string> in_display_unit(double value, const std::string& unit) {
-  if (unit == "m") return {1e3 * value, "mm"};
-  if (unit == "rad") return {180 / std::numbers::pi * value, "deg"};
-  return {value, unit};
+  const DisplayUnit shown = display_unit(unit);
+  return {value / shown.size, shown.name};
 }
 
 }  // namespace pkm

@@ -15,8 +15,7 @@ AxisVector<double> axis_vector(std::span<const double> values) {
 
 std::string axes_text(const Axes& axes, std::span<const double> values) {
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < axes.size(); ++i)
-    texts.push_back(axes[i].name + " = " + position(values[i], axes[i].unit));
+  for (std::size_t i = 0; i < axes.size(); ++i) texts.push_back(axes[i].name + " = " + number(values[i], axes[i].unit));
   return join(texts);
 }
 
@@ -41,12 +40,11 @@ Json matrix_json(const std::optional<AxisMatrix<double>>& matrix) {
 
 std::string matrix_text(const std::string& title, const AxisMatrix<double>& matrix) {
   std::string text = '\n' + title + '\n';
+  const std::size_t width = 8 + static_cast<std::size_t>(significant_digits());  // "-1.234e-05", two blanks before it
   for (std::size_t i = 0; i < matrix.rows(); ++i, text += '\n')
     for (std::size_t j = 0; j < matrix.cols(); ++j) {
-      std::array<char, 32> cell{};
-      // Adding 0.0 turns -0 into 0, so that "-0" is not printed.
-      std::snprintf(cell.data(), cell.size(), "%18.11g", matrix(i, j) + 0.0);
-      text += cell.data();
+      const std::string cell = digits(matrix(i, j));
+      text += std::string(cell.size() < width ? width - cell.size() : 1, ' ') + cell;
     }
   return text;
 }

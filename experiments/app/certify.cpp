@@ -29,13 +29,14 @@ void report_volume(const Target& target, const WorkspacePlan& plan, const Volume
   const MechanismInfo& info = target.info();
   const std::string unit = volume_unit(info, plan);
   out.json["volume"] = {{"lower", bounds.lower}, {"upper", bounds.upper}, {"unit", unit}};
-  out.head.push_back({"volume", "at least", number(bounds.lower, unit)});
-  out.head.push_back({"", "at most", number(bounds.upper, unit)});
+  const auto [lower, upper] = bounds_text(bounds.lower, bounds.upper, unit);
+  out.head.push_back({measure_name(sweep_of(info, plan).swept.size()), "at least", lower});
+  out.head.push_back({"", "at most", upper});
   out.add("gap", bounds.gap(), number(bounds.gap()) + ", requested " + number(requested_gap));
   out.add("columns", coordinate_names(info, {bounds.innermost})[0]);
   out.add("boxes", bounds.boxes,
           std::to_string(bounds.boxes) + " in the final partition, " + std::to_string(bounds.examined) + " examined");
-  out.add("seconds", seconds, formatted("%.2f", seconds));
+  out.add("seconds", seconds, digits(seconds));
 }
 
 /// Sentence that explains why the requested relative gap of the bounds was not reached; "" if it was reached.

@@ -97,9 +97,12 @@ AddCommand add_run, add_resume, add_check, add_evaluate, add_sensitivity, add_po
     add_manual;
 void add_all_commands(CLI::App& app, Session& session);
 
+/// What stopped a command, with the exit code that says so: "SIGINT (Ctrl-C), exit code 3".
+std::string stop_words(const std::string& cause);
+
 inline constexpr const char* kProgramMeaning = "Design-space optimisation of parallel kinematic machines.";
 inline constexpr const char* kProgramNotes =
-    "See 'pkmopt COMMAND --help' for the options of a command. Numbers are SI (m, rad, s) or carry a unit: x=200mm.\n"
+    "See 'pkmopt help COMMAND' for the options of a command. Numbers are SI (m, rad, s) or carry a unit: x=200mm.\n"
     "Exit codes: 0 done, 1 failure, 2 bad input, 3 stopped early with a checkpoint, 4 nothing feasible.\n"
     "Example: pkmopt run experiments/4ppa-2par/paper-problem.toml";
 

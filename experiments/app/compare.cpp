@@ -47,8 +47,7 @@ Row row_of_line(const Robots& robots, std::size_t k) {
     const TaskValue& line = robot.values[k];
     const auto [value, own_unit] = in_display_unit(line.value, line.unit);
     is_available = is_available || !std::isnan(value);
-    row.push_back(
-        std::isnan(value) ? "-" : formatted("%.4g", value) + (unit == "-" && own_unit != "1" ? " " + own_unit : ""));
+    row.push_back(std::isnan(value) ? "-" : digits(value) + (unit == "-" && own_unit != "1" ? " " + own_unit : ""));
   }
   return is_available ? row : Row();
 }

@@ -74,12 +74,12 @@ void report_components(const Target& target, const WorkspacePlan& plan, Printout
     const bool holds_home = k + 1 == home;
     Json json = {{"cells", component.cells}, {"share", share},     {"volume", volume},
                  {"sign", component.side},   {"home", holds_home}, {"extents", Json::object()}};
-    Row row = {std::to_string(k + 1), formatted("%.4g %%", 100 * share), number(volume, unit)};
+    Row row = {std::to_string(k + 1), digits(100 * share) + " %",
+               number(volume, unit, known_digits_of_voxels(component.cells, axes.size()))};
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
       const auto& [lower, upper] = extents[k][axis];
       json["extents"][axes[axis].name] = extents[k][axis];
-      row.push_back(axes[axis].name + " = " + position(lower, axes[axis].unit) + " .. " +
-                    position(upper, axes[axis].unit));
+      row.push_back(axes[axis].name + " = " + range_text(lower, upper, axes[axis].unit));
     }
     if (holds_home) row.push_back("holds the home pose");
     out.json["components"].push_back(std::move(json));
@@ -97,7 +97,7 @@ void report_components(const Target& target, const WorkspacePlan& plan, Printout
                                         std::to_string(large_ones(across, feasible)) +
                                         " if singularities could be crossed"});
   if (rows.size() < found.all.size())
-    rows.push_back({"others", formatted("%.4g %%", 100 * others),
+    rows.push_back({"others", digits(100 * others) + " %",
                     "in " + std::to_string(found.all.size() - rows.size()) + " components of less than 0.1 % each"});
   out.add_table("components of the workspace (share, size, extent)", rows);
 }

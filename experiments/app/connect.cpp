@@ -215,7 +215,7 @@ std::string connect(const Target& target, const ConnectArguments& arguments, Pri
   for (const Pose<double>& pose : answer.points) {
     Row row = {std::to_string(rows.size())};
     for (std::size_t i = 0; i < pose.size(); ++i)
-      row.push_back(info.coordinates[i].name + " = " + position(pose[i], info.coordinates[i].unit));
+      row.push_back(info.coordinates[i].name + " = " + number(pose[i], info.coordinates[i].unit));
     rows.push_back(std::move(row));
   }
   out.add_table("points of the path, connected by straight lines", rows);

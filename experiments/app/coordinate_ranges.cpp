@@ -83,8 +83,8 @@ void report_ranges(const std::vector<std::string>& home_given, const Target& tar
                                      {"upper", upper.value},
                                      {"below", lower.constraint},
                                      {"above", upper.constraint}};
-    rows.push_back({axis.name, position(lower.value, axis.unit) + " .. " + position(upper.value, axis.unit),
-                    "below: " + lower.constraint, "above: " + upper.constraint});
+    rows.push_back({axis.name, range_text(lower.value, upper.value, axis.unit), "below: " + lower.constraint,
+                    "above: " + upper.constraint});
   }
   out.add_table("range of each coordinate alone, from " + axes_text(info.coordinates, home), rows);
 }

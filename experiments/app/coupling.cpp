@@ -120,7 +120,7 @@ std::string coupling(const Target& target, const CouplingArguments& arguments, P
     const auto [json_of_one, rows_of_one] = statistics(info, found);
     each.push_back(json_of_one);
     each.back()["phi"] = phi;
-    out.add_table(title("phi = " + position(phi, find_named(info.coordinates, "phi")->unit), found), rows_of_one);
+    out.add_table(title("phi = " + number(phi, find_named(info.coordinates, "phi")->unit), found), rows_of_one);
   }
   if (each.size() != 1) out.add_table(title(each.empty() ? "coupling indices" : "all angles", all), rows);
   if (!arguments.csv.empty()) write_table(arguments, coupling_table(info, all));

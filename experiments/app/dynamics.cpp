@@ -48,7 +48,7 @@ std::string report_drive_forces(const Target& target, const PoseDynamics<double>
 
   std::vector<Row> rows = {{"", "position"}};
   for (std::size_t i = 0; i < info.joints.size(); ++i)
-    rows.push_back({info.joints[i].name, position(d.q[i], info.joints[i].unit)});
+    rows.push_back({info.joints[i].name, number(d.q[i], info.joints[i].unit)});
   const auto add = [&](const char* key, const char* title, const AxisVector<double>& values, const auto& unit) {
     out.json[key] = vector_json(values);
     rows[0].push_back(title);

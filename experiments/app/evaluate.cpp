@@ -105,11 +105,18 @@ std::optional<double> proven_error(const DesignProblem& problem, DesignReport& r
   const double error = survey.volume * (survey.error + problem.parts().plan.columns()->tolerance);
   if (survey.volume + error < bounds->lower || survey.volume - error > bounds->upper) {
     report.status = Status::failed;
-    report.reason = "its volume " + number(survey.volume) + " lies outside of the proven bounds " +
-                    number(bounds->lower) + " and " + number(bounds->upper);
+    report.reason = "its volume " + shortest(survey.volume) + " lies outside of the proven bounds " +
+                    shortest(bounds->lower) + " and " + shortest(bounds->upper);
     return {};
   }
   return std::max(survey.volume - bounds->lower, bounds->upper - survey.volume) / survey.volume;
+}
+
+/// Number of digits of the workspace volume that its method determines.
+int known_digits(const DesignProblem& problem, const WorkspaceResult<double>& survey) {
+  const WorkspacePlan& plan = problem.parts().plan;
+  if (!plan.voxels()) return kFullDigits;
+  return known_digits_of_voxels(survey.feasible_cells, sweep_of(problem.parts().mechanism->info(), plan).swept.size());
 }
 
 /// Adds the measure of the workspace (volume, area or length) to the output.
@@ -121,7 +128,10 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
   const std::string unit = volume_unit(problem.parts().mechanism->info(), plan);
   const std::string method = plan.voxels() ? "voxels" : "columns";
   Json json = {{"method", method}, {"volume", survey.volume}, {"unit", unit}};
-  std::vector<Row> rows = {{"method", method}, {"volume", number(survey.volume, unit)}};
+  const int known = known_digits(problem, survey);
+  std::vector<Row> rows = {{"method", method},
+                           {measure_name(sweep_of(problem.parts().mechanism->info(), plan).swept.size()),
+                            number(survey.volume, unit, known)}};
   if (plan.voxels()) {
     json["cells"] = survey.cells;
     json["feasible_cells"] = survey.feasible_cells;
@@ -157,12 +167,12 @@ void report_workspace(const DesignProblem& problem, const WorkspaceResult<double
 /// @param holds  true if the computed volume lies within the bounds
 void report_bounds(const VolumeBounds& bounds, double requested_gap, bool holds, const std::string& unit,
                    Printout& out) {
+  const auto [lower, upper] = bounds_text(bounds.lower, bounds.upper, unit);
   out.json["certified"] = {
       {"lower", bounds.lower}, {"upper", bounds.upper}, {"unit", unit}, {"gap", bounds.gap()}, {"holds_volume", holds}};
-  out.add_table("certified bounds on the volume",
-                {{"at least", number(bounds.lower, unit)},
-                 {"at most", number(bounds.upper, unit)},
-                 {"gap", number(bounds.gap()) + ", requested " + number(requested_gap)}});
+  out.add_table("certified bounds", {{"at least", lower},
+                                     {"at most", upper},
+                                     {"gap", number(bounds.gap()) + ", requested " + number(requested_gap)}});
 }
 
 /// Computes certified bounds on the volume; sets the status of `report` to failed if its volume lies outside of them.
@@ -263,10 +273,10 @@ void start_python_functions(const Study& study, const EvaluateArguments& argumen
 /// Adds the yield with its confidence interval to the output, and the constraints that machines violate.
 void report_yield(const Yield& yield, const DesignProblem& machine, Printout& out) {
   const auto [lower, upper] = yield.interval();
-  std::vector<Row> rows = {{"machines", std::to_string(yield.machines)},
-                           {"satisfy all constraints", std::to_string(yield.good)},
-                           {"yield", formatted("%.5f", yield.share()),
-                            formatted("%.5f", lower) + " .. " + formatted("%.5f", upper) + " with 95 % confidence"}};
+  std::vector<Row> rows = {
+      {"machines", std::to_string(yield.machines)},
+      {"satisfy all constraints", std::to_string(yield.good)},
+      {"yield", digits(yield.share()), digits(lower) + " .. " + digits(upper) + " with 95 % confidence"}};
   Json violated = Json::object();
   for (std::size_t k = 0; k < yield.violated.size(); ++k) {
     const std::string& name = machine.margins()[k].name;
@@ -311,11 +321,11 @@ std::string evaluate(const Session& session, const Target& target, const Evaluat
   const bool failed = report.status == Status::failed, surveyed = !failed || bounds;
 
   /// Adds named values with their units, a remark on each, and their meanings.
-  const auto report_values = [&out](const std::string& key, const std::string& title, const auto& named,
-                                    const std::vector<double>& values, const auto& remark) {
+  const auto report_values = [&](const std::string& key, const std::string& title, const auto& named,
+                                 const std::vector<double>& values, const auto& remark, const auto& text_of) {
     std::vector<Row> rows;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      Row& row = rows.emplace_back(Row{named[i].name, number(values[i], named[i].unit)});
+      Row& row = rows.emplace_back(Row{named[i].name, text_of(values[i], named[i].unit)});
       if (const std::string text = remark(named[i], values[i]); !text.empty()) row.push_back(text);
       row.push_back(named[i].meaning);
     }
@@ -323,26 +333,39 @@ std::string evaluate(const Session& session, const Target& target, const Evaluat
     out.add_table(title, rows);
   };
   const auto no_remark = [](const auto&, double) { return ""; };
+  const auto parameter_text = [](double value, const std::string& unit) { return number(value, unit); };
+  const auto value_text = [&](double value, const std::string& unit) {
+    // A voxel volume has the digits that its grid supports, whatever the study calls it.
+    const bool is_volume = surveyed && value == report.workspace.volume;
+    return result_text(value, unit, is_volume ? known_digits(*problem, report.workspace) : kFullDigits);
+  };
   out.add("mechanism", target.info().name);
   if (target.study) out.head.push_back({"study", target.study->name});
   out.head.push_back({"feasible", feasibility_text(*problem, report)});
-  report_values("parameters", "parameters", target.info().parameters, report.parameters, no_remark);
+  report_values("parameters", "parameters", target.info().parameters, report.parameters, no_remark, parameter_text);
   out.json["workspace"] = nullptr;
   if (surveyed) report_workspace(*problem, report.workspace, proven, found.why_voxels, out);
   if (bounds) report_bounds(*bounds, *gap, !failed, volume_unit(target.info(), problem->parts().plan), out);
   report_values(
       "objectives", "objectives", problem->objectives(), report.objectives,
-      [](const ObjectiveInfo& o, double) { return o.direction == Direction::maximise ? "maximise" : "minimise"; });
-  report_values("constraints", "constraints (margins, satisfied if >= 0)", problem->margins(), report.margins,
-                [](const MarginInfo&, double margin) { return margin >= 0 ? "satisfied" : "violated"; });
-  report_values("outputs", "outputs", problem->reports(), report.reports, no_remark);
+      [](const ObjectiveInfo& o, double) { return o.direction == Direction::maximise ? "maximise" : "minimise"; },
+      value_text);
+  report_values(
+      "constraints", "constraints (margins, satisfied if >= 0)", problem->margins(), report.margins,
+      [](const MarginInfo&, double margin) { return margin >= 0 ? "satisfied" : "violated"; }, value_text);
+  report_values("outputs", "outputs", problem->reports(), report.reports, no_remark, value_text);
   if (report.yield) report_yield(*report.yield, *problem->parts().built->problem, out);
   if (report.reason.empty())
     with_team(arguments.threads, [&] { report_sensitivities(*problem, report, arguments, out); });
   out.json["feasible"] = report.status == Status::feasible;
   const NamedValues facts = quantities_of_design(*target.mechanism, report.parameters, problem->parts().plan.limits);
   out.json["facts"] = values_by_name(facts);
-  out.add_table("facts", value_rows(facts));
+  std::vector<Row> rows;
+  for (const auto& [name, value] : facts) {
+    const QuantityInfo* const quantity = find_named(target.info().quantities, name);
+    rows.push_back({name, number(value, quantity ? quantity->unit : "1")});
+  }
+  out.add_table("facts", rows);
   return failed ? "the evaluation failed: " + report.reason : "";
 }
 

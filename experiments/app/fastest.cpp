@@ -147,7 +147,7 @@ void report_fastest(const MechanismInfo& info, const FastestMotion& found, const
       {"law", own ? "that of the motion" : "time-optimal along the path", own ? "" : error_text(found.error)});
   std::vector<Row> rows = {{"", "share of the time", "first from", "last until"}};
   for (const LimitShare& share : shares_of(found.active))
-    rows.push_back({name_of_limit(info, share.limit), formatted("%.4g %%", 100 * share.time / found.duration),
+    rows.push_back({name_of_limit(info, share.limit), digits(100 * share.time / found.duration) + " %",
                     number(share.first, "s"), number(share.last, "s")});
   out.add_table("limits that bound the motion", rows);
   out.json["fastest"] = {{"law", arguments.law}, {"discretisation_error", found.error}};

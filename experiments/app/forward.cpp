@@ -93,7 +93,7 @@ std::string forward(const Target& target, const ForwardArguments& arguments, Pri
 
   Json poses = Json::array();
   std::vector<Row> rows = {{}}, motions = {{"mode"}};
-  for (const AxisInfo& axis : coordinates) rows[0].push_back(axis.name + " [" + axis.unit + "]");
+  for (const AxisInfo& axis : coordinates) rows[0].push_back(axis.name);
   rows[0].push_back("mode");
   for (const char* rate : {" speed", " acceleration"})
     for (const AxisInfo& axis : coordinates) motions[0].push_back(axis.name + rate);
@@ -104,9 +104,7 @@ std::string forward(const Target& target, const ForwardArguments& arguments, Pri
     pose["working_mode"] = text_or_null(assembly.working_mode);
     pose["double_roots"] = assembly.double_roots;
     Row& row = rows.emplace_back();
-    for (std::size_t i = 0; i < coordinates.size(); ++i)
-      row.push_back(coordinates[i].turns() ? position(assembly.pose[i], coordinates[i].unit)
-                                           : number(assembly.pose[i]));
+    for (std::size_t i = 0; i < coordinates.size(); ++i) row.push_back(number(assembly.pose[i], coordinates[i].unit));
     row.push_back(assembly.mode);
     for (const auto& root : assembly.double_roots) row.push_back("double in " + root);
     if (arguments.moves()) {

@@ -15,20 +15,18 @@ namespace {
 // points with a label are shown.
 constexpr std::size_t kMaxFullFront = 20, kExcerptSize = 10;
 
-std::string six_digits(double value) { return formatted("%.6g", value); }
-
 std::string headline(const ProblemRecord& problem, const StageRecord& stage, const Scores& front) {
   const FrontRecord& record = *stage.front;
   std::string text = "  front: " + std::to_string(front.size()) + (front.size() == 1 ? " design" : " designs");
   if (!record.reference.empty()) {
-    text += ", hypervolume " + six_digits(hypervolume_of(problem, stage, front)) + " with reference point";
+    text += ", hypervolume " + digits(hypervolume_of(problem, stage, front)) + " with reference point";
     for (std::size_t k = 0; k < record.reference.size(); ++k)
-      text += (k ? ", " : " ") + problem.objectives[k].name + " " + six_digits(record.reference[k]);
+      text += (k ? ", " : " ") + problem.objectives[k].name + " " +
+              result_text(record.reference[k], problem.objectives[k].unit);
   }
-  if (!record.spread.empty() && !std::isnan(record.spread.back()))
-    text += "; spread " + six_digits(record.spread.back());
+  if (!record.spread.empty() && !std::isnan(record.spread.back())) text += "; spread " + digits(record.spread.back());
   if (!record.igd_plus.empty() && !std::isnan(record.igd_plus.back()))
-    text += "; IGD+ " + six_digits(record.igd_plus.back());
+    text += "; IGD+ " + digits(record.igd_plus.back());
   return text + '\n';
 }
 
@@ -41,24 +39,44 @@ std::string front_text(const ProblemRecord& problem, const StageRecord& stage) {
   const std::vector<std::size_t> spread =
       select_representatives(front, front.size() <= kMaxFullFront ? kMaxFullFront : kExcerptSize);
   std::vector<Row> rows = {{"  point"}};
-  for (const auto& v : problem.variables) rows[0].push_back(v.name);
-  for (const auto& o : problem.objectives) rows[0].push_back(o.name);
+  // Each column has the unit that suits its largest value.
+  const auto unit_of = [&](const auto& named, const auto& values_of, const auto& choose_unit) {
+    double greatest = 0;
+    for (const std::int64_t row : stage.front->rows)
+      greatest = std::fmax(greatest, std::fabs(values_of(static_cast<std::size_t>(row))));
+    const DisplayUnit unit = choose_unit(named.unit, greatest);
+    rows[0].push_back(named.name + (unit.name == "1" ? "" : " [" + unit.name + "]"));
+    return unit;
+  };
+  std::vector<DisplayUnit> units, units_of_objectives;
+  for (std::size_t v = 0; v < problem.variables.size(); ++v)
+    units.push_back(unit_of(
+        problem.variables[v], [&](std::size_t row) { return stage.table.design(row)[v]; },
+        [](std::string_view unit, double size) { return display_unit(unit, size); }));
+  for (std::size_t k = 0; k < problem.objectives.size(); ++k)
+    units_of_objectives.push_back(unit_of(
+        problem.objectives[k], [&](std::size_t row) { return stage.table.objective_row(row)[k]; }, result_unit));
   for (std::size_t i = 0; i < front.size(); ++i) {
     if (labels[i].empty() && std::ranges::find(spread, i) == spread.end()) continue;
     const auto row = static_cast<std::size_t>(stage.front->rows[i]);
     Row& cells = rows.emplace_back(Row{"  " + std::to_string(i + 1)});
     for (std::size_t v = 0; v < problem.variables.size(); ++v)
-      cells.push_back(variable_text(problem, v, stage.table.design(row)[v], six_digits));
-    for (const double f : stage.table.objective_row(row)) cells.push_back(six_digits(f));
+      cells.push_back(variable_text(problem, v, stage.table.design(row)[v], units[v]));
+    for (std::size_t k = 0; k < problem.objectives.size(); ++k)
+      cells.push_back(digits(stage.table.objective_row(row)[k] / units_of_objectives[k].size));
     cells.push_back(join(labels[i]));
   }
   return headline(problem, stage, front) + aligned(rows);
 }
 
-std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value,
-                          std::string (*format)(double)) {
+std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value) {
   const std::string name = choice_name(problem, variable, value);
-  return name.empty() ? format(value) : name;
+  return name.empty() ? number(value, problem.variables[variable].unit) : name;
+}
+
+std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value, const DisplayUnit& unit) {
+  const std::string name = choice_name(problem, variable, value);
+  return name.empty() ? digits(value / unit.size) : name;
 }
 
 Json variable_json(const ProblemRecord& problem, std::size_t variable, double value) {

@@ -54,7 +54,7 @@ std::array<double, 3> parse_home(const std::vector<std::string>& lists, const Me
 }
 
 std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const GridArguments& arguments,
-                             std::int64_t default_cells, double max_cells) {
+                             std::int64_t default_cells, double max_cells, const Slices& sliced) {
   const MechanismInfo& info = target.info();
   const Sweep& sweep = sweep_of(info, plan);
   const std::vector<Assignable> swept = assignable_coordinates(info, sweep);
@@ -71,9 +71,22 @@ std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const Gr
       given[i] = given[i] || ranges[i];
     }
   }
+  std::vector<std::size_t> axes;  // those that have more than one cell
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < swept.size(); ++i) {
+    voxels.cells[i] = sliced.contains(sweep.swept[i]) ? 1 : voxels.cells[i];
+    if (sliced.contains(sweep.swept[i])) continue;
+    axes.push_back(i);
+    names.push_back(swept[i].name);
+  }
   if (!arguments.cells.empty()) {
-    const auto cells = parse_cells(arguments.cells, names_of(swept));
-    std::ranges::copy(cells, voxels.cells.begin());
+    for (const auto& [coordinate, value] : sliced)
+      if (const std::string& name = info.coordinates[static_cast<std::size_t>(coordinate)].name;
+          contains(assigned_names(arguments.cells), name))
+        throw ConfigError({"", 0, "--cells"}, "cells of " + name + ", at which the workspace is cut",
+                          "cells of " + join(names));
+    const auto cells = parse_cells(arguments.cells, names);
+    for (std::size_t k = 0; k < axes.size(); ++k) voxels.cells[axes[k]] = cells[k];
   }
   double total = 1;
   for (const std::int64_t cells : voxels.cells) total *= static_cast<double>(cells);

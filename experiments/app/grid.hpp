@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/config/assignments.hpp"
+#include "engine/workspace/slices.hpp"
 #include "experiments/app/target.hpp"
 
 namespace pkm {
@@ -41,8 +42,9 @@ Box reachable_box(const WorkspacePlan& plan, const Target& target);
 /// them, those of the study, otherwise default values. The fixed coordinates of the plan must have been set before.
 /// Throws ConfigError.
 /// @param max_cells  maximum total number of cells
+/// @param sliced     swept coordinates that are cut at a value, which have a single cell
 /// @return for each swept coordinate, true if its range was specified, so that feasible poses may exist beyond it
 std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const GridArguments& arguments,
-                             std::int64_t default_cells, double max_cells);
+                             std::int64_t default_cells, double max_cells, const Slices& sliced = {});
 
 }  // namespace pkm

@@ -120,7 +120,7 @@ void report_rods(const Target& target, const std::string& mode, const Pose<doubl
     const std::optional<double> axial = rod.ends ? std::optional(rod.axial()) : std::nullopt;
     const std::optional<double> stress = axial ? std::optional(*axial / rod.area) : std::nullopt,
                                 reserve = rod.reserve();
-    rows.push_back({rod.name, axial ? number(*axial, "N") : "undetermined", stress ? number(*stress / 1e6, "MPa") : "",
+    rows.push_back({rod.name, axial ? number(*axial, "N") : "undetermined", stress ? number(*stress, "Pa") : "",
                     number(rod.buckling_force, "N"), reserve ? number(*reserve) : ""});
     json[rod.name] = {{"axial_force", json_or_null(axial)},
                       {"stress", json_or_null(stress)},
@@ -153,7 +153,7 @@ void report_rods(const Target& target, const std::string& mode, const Trajectory
     Row& row = rows.emplace_back(Row{rod.name});
     for (const double force : {rod.tension, rod.compression})
       row.push_back(rod.is_determined ? number(force, "N") : "undetermined");
-    row.push_back(rod.is_determined ? number(rod.stress / 1e6, "MPa") : "");
+    row.push_back(rod.is_determined ? number(rod.stress, "Pa") : "");
     row.push_back(number(rod.buckling_force, "N"));
     row.push_back(reserve ? number(*reserve) : "");
     row.push_back(time ? number(*time, "s") : "");

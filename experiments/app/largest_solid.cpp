@@ -154,8 +154,8 @@ void report_solids(const std::vector<RequestedSolid>& requested, const Target& t
     }
     json["volume"] = found.volume;
     json["unit"] = unit;
-    rows.push_back({unit == "m^2" ? "area" : "volume", number(found.volume, unit)});
-    // centre: list of "coordinate=value"; places: arguments for the option of `pkmopt certify` that certifies the solid
+    rows.push_back({measure_name(finder->sweep().swept.size()), number(found.volume, unit)});
+    // "coordinate=value" for the centre; arguments of the option of `certify`, see `rows`
     std::vector<std::string> centre, places;
     const SolidShape& shape = finder->spec().shape;
     for (std::size_t axis = 0; axis < shape.axes(); ++axis) {

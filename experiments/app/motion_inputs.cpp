@@ -52,7 +52,7 @@ void report_quantities(const MechanismInfo& info, const MotionSample& at, const 
   out.json["quantities"] = values_by_name(pose_quantities_of(info, values));
   std::vector<Row> rows;
   for (std::size_t i = 0; i < at.inputs.size(); ++i)
-    rows.push_back({info.inputs[i].name, position(at.inputs[i].value, info.inputs[i].unit)});
+    rows.push_back({info.inputs[i].name, number(at.inputs[i].value, info.inputs[i].unit)});
   for (std::size_t i = 0; i < values.size(); ++i)
     if (info.quantities[i].of_motion)
       rows.push_back(

@@ -33,7 +33,7 @@ void report_joints(const Target& target, const std::string& mode, const MotionSa
   const MechanismInfo& info = target.info();
   std::vector<Row> rows;
   for (std::size_t i = 0; report.joints && i < info.joints.size(); ++i)
-    rows.push_back({info.joints[i].name, position((*report.joints)[i], info.joints[i].unit)});
+    rows.push_back({info.joints[i].name, number((*report.joints)[i], info.joints[i].unit)});
   if (const Velocities* const velocities = target.mechanism->velocities()) {
     for (const char* key : {"H", "joint_speeds", "joint_accelerations"}) out.json[key] = nullptr;
     if (const auto influence = velocities->influence(target.parameters, at.pose, mode)) {
@@ -227,12 +227,18 @@ std::string pose(const Target& target, const PoseArguments& arguments, const std
   json["indices"] = values_by_name(report.indices);
 
   json["angles"] = values_by_name(report.angles);
-  out.add_table("angles and lengths (rad, m)", value_rows(report.angles));
+  std::vector<Row> angles;
+  for (const auto& [name, value] : report.angles) {
+    // Those that are not quantities of the mechanism are the clearance and the angles of the passive joints.
+    const QuantityInfo* const quantity = find_named(info.quantities, name);
+    angles.push_back({name, number(value, quantity ? quantity->unit : name == "clearance" ? "m" : "rad")});
+  }
+  out.add_table("angles and lengths", angles);
   report_quantities(info, at, mechanism.quantities(target.parameters, mode, target.limits, at), out);
   for (const auto& [name, value] : report.margins)
     margins.push_back({name, number(value), std::isnan(value) ? "" : is_satisfied(value) ? "satisfied" : "violated"});
   json["margins"] = values_by_name(report.margins);
-  out.add_table("margins (satisfied if >= 0)", margins);
+  out.add_table("margins in SI units (satisfied if >= 0)", margins);
   write_links(target, mode, at.pose, arguments, out);
   return assembly_error(mode, report);
 }

@@ -1,6 +1,8 @@
 // Output of results as text and as JSON: formatted numbers, aligned tables.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +12,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/catalogue.hpp"
+#include "engine/core/display_unit.hpp"
 #include "engine/core/formatted.hpp"
 #include "engine/core/options.hpp"
 #include "engine/core/text_table.hpp"
@@ -20,21 +24,46 @@ namespace pkm {
 using Json = nlohmann::ordered_json;
 using Row = std::vector<std::string>;
 
-/// Text of a number with its unit and 12 significant digits; "not computed" for NaN.
-std::string number(double value, std::string_view unit = "1");
-/// Text of the value of a coordinate or a joint; an angle is also given in degrees: "0.349065850399 rad (20 deg)".
-std::string position(double value, std::string_view unit);
+// Numbers for people have the units that people use and four significant digits; --digits changes their number. JSON,
+// CSV and other files have SI units and all digits.
 
-/// Unit in which derivatives with respect to a quantity are printed: mm for m, deg for rad, otherwise the SI unit
-/// itself.
-struct DisplayUnit {
-  double size;  ///< value of the unit in SI
-  std::string name;
-};
-DisplayUnit display_unit(const std::string& si_unit);
+inline constexpr int kDefaultDigits = 4, kFullDigits = 17;  ///< kFullDigits: as many as reproduce the number
+/// Sets the number of significant digits of all texts (--digits).
+void use_digits(int count);
+/// The number of significant digits of a text.
+/// @param known  digits of the value that are known; more are printed only on request (--digits)
+int significant_digits(int known = kFullDigits);
 
-/// Text of a number with ten significant digits; "-" for NaN.
-inline std::string digits(double value) { return formatted("%.10g", value); }
+/// As display_unit(), for objectives, outputs and constraints of a study, whose rad is not converted, because it is
+/// seldom an angle: a workspace ratio over x, z and theta, for example, has this unit.
+DisplayUnit result_unit(std::string_view si_unit, double magnitude);
+
+/// Text of a number without a unit. A number below 1e7 has at least the digits before its decimal point: "12412".
+/// "-" for NaN.
+/// @param least  minimum number of significant digits
+std::string digits(double value, int least = 1);
+/// As digits(), with the sign of positive numbers: "+0.25".
+std::string signed_digits(double value);
+/// Text of a number with the unit that suits it: "302.1 mm", "0.3021"; "not computed" for NaN.
+/// @param known  digits of the value that are known
+std::string number(double value, std::string_view unit = "1", int known = kFullDigits);
+/// Text of a number in a given unit.
+std::string in_unit(double value, const DisplayUnit& unit, int known = kFullDigits);
+/// Text of an objective, output or constraint of a study with its unit.
+inline std::string result_text(double value, std::string_view si_unit, int known = kFullDigits) {
+  return in_unit(value, result_unit(si_unit, value), known);
+}
+/// Text of a number rounded down (direction < 0) or up (direction > 0) to `count` significant digits.
+std::string directed_digits(double value, int count, int direction);
+/// Texts of a proven lower and upper bound with one digit more than distinguishes them, rounded outwards.
+std::array<std::string, 2> bounds_text(double lower, double upper, std::string_view unit);
+/// Text of a range in the unit that suits its larger end: "-250 .. 250 mm".
+std::string range_text(double lower, double upper, std::string_view unit);
+/// Number of significant digits that a voxel count supports. Its relative error is about that of a random count of the
+/// boundary cells, N^(-(d + 1) / (2 d)) for N feasible cells in d dimensions.
+int known_digits_of_voxels(std::int64_t feasible_cells, std::size_t dimensions);
+/// "volume"; "area" if only two coordinates are swept, "length" if only one is.
+std::string measure_name(std::size_t swept);
 
 void print_json(const Json& json);
 
@@ -79,7 +108,5 @@ Json values_by_name(const Named& named, std::span<const double> values) {
   return object;
 }
 Json values_by_name(const std::vector<std::pair<std::string, double>>& values);
-/// Table rows with the name and the text of each value.
-std::vector<Row> value_rows(const std::vector<std::pair<std::string, double>>& values);
 
 }  // namespace pkm

@@ -26,6 +26,7 @@
 #include "experiments/app/commands.hpp"
 #include "experiments/app/line_wrapping.hpp"
 #include "experiments/app/next_step.hpp"
+#include "experiments/app/print.hpp"
 #include "experiments/app/printable_stream.hpp"
 #include "experiments/app/terminal_colours.hpp"
 #include "experiments/app/version.hpp"
@@ -41,27 +42,27 @@ constexpr std::size_t kMaxProgramName = 40;  // maximum number of bytes of the p
 struct Command {
   std::string_view name;
   AddCommand* add;
-  bool evaluates = false;  ///< true if the command evaluates many designs, so that the instruction set influences its
-                           ///< run time
+  bool prints_results = false;  ///< true if it prints computed values
+  bool evaluates = false;  ///< true if it evaluates many designs, so that the instruction set influences its run time
 };
 
-constexpr Command kCommands[] = {{"run", add_run, true},
-                                 {"resume", add_resume, true},
+constexpr Command kCommands[] = {{"run", add_run, true, true},
+                                 {"resume", add_resume, true, true},
                                  {"check", add_check},
-                                 {"evaluate", add_evaluate, true},
-                                 {"sensitivity", add_sensitivity, true},
-                                 {"pose", add_pose},
-                                 {"forward", add_forward},
-                                 {"dynamics", add_dynamics},
-                                 {"coupling", add_coupling, true},
-                                 {"trajectory", add_trajectory},
-                                 {"simulate", add_simulate},
-                                 {"workspace", add_workspace},
-                                 {"connect", add_connect},
-                                 {"certify", add_certify},
-                                 {"tolerances", add_tolerances},
-                                 {"compare", add_compare},
-                                 {"show", add_show},
+                                 {"evaluate", add_evaluate, true, true},
+                                 {"sensitivity", add_sensitivity, true, true},
+                                 {"pose", add_pose, true},
+                                 {"forward", add_forward, true},
+                                 {"dynamics", add_dynamics, true},
+                                 {"coupling", add_coupling, true, true},
+                                 {"trajectory", add_trajectory, true},
+                                 {"simulate", add_simulate, true},
+                                 {"workspace", add_workspace, true},
+                                 {"connect", add_connect, true},
+                                 {"certify", add_certify, true},
+                                 {"tolerances", add_tolerances, true},
+                                 {"compare", add_compare, true},
+                                 {"show", add_show, true},
                                  {"report", add_report},
                                  {"export", add_export},
                                  {"generate", add_generate},
@@ -93,9 +94,35 @@ void add_instruction_set(CLI::App& command) {
       ->type_name("SET");
 }
 
+/// Declares --digits.
+void add_digits(CLI::App& command) {
+  const auto choose = [](const std::string& text) {
+    use_digits(static_cast<int>(parse_option(text, "--digits", 1, kFullDigits)));
+  };
+  command
+      .add_option_function<std::string>("--digits", choose,
+                                        "Significant digits of the numbers in texts (default: 4; 17: all)")
+      ->type_name("N:INT in [1 - " + std::to_string(kFullDigits) + "]");
+}
+
 void add(const Command& command, CLI::App& app, Session& session) {
   command.add(app, session);
-  if (command.evaluates) add_instruction_set(*app.get_subcommand(std::string(command.name)));
+  CLI::App& added = *app.get_subcommand(std::string(command.name));
+  if (command.evaluates) add_instruction_set(added);
+  if (command.prints_results) add_digits(added);
+}
+
+/// Version, revision and instruction sets of the program, as text or as one JSON object.
+std::string describe_version(bool as_json) {
+  const std::vector<std::string> sets{kInstructionSets.begin(), kInstructionSets.end()};
+  const std::string chosen(name_of(instruction_set()));
+  if (!as_json) return program_words() + "\ninstruction set: " + chosen + " of " + join(sets);
+  return Json({{"program", "pkmopt"},
+               {"version", program_version()},
+               {"revision", program_revision()},
+               {"instruction_set", chosen},
+               {"instruction_sets", sets}})
+      .dump(2);
 }
 
 /// Text that is printed if no command is given.
@@ -108,21 +135,27 @@ constexpr const char* kFirstSteps =
     "  pkmopt run study.toml                         find the best design and write study.h5\n"
     "  pkmopt report study.h5                        write the results as a web page with plots\n"
     "  pkmopt workspace robot.toml                   compute the workspace of one design\n"
-    "'pkmopt --help' lists all commands; 'pkmopt COMMAND --help' describes one of them.\n";
+    "'pkmopt --help' lists all commands; 'pkmopt help COMMAND' describes one of them.\n";
 
-void run(const std::vector<std::string>& arguments, Session& session) {
+void run(std::vector<std::string> arguments, Session& session) {
   if (arguments.empty()) {
     std::cerr << kProgramMeaning << '\n' << with_program_name(kFirstSteps, session.program);
     session.exit_code = kBadInput;
     return;
   }
   CLI::App app(kProgramMeaning, session.program);
-  app.set_version_flag("--version", program_words() + "\ninstruction set: " + std::string(name_of(instruction_set())) +
-                                        " of " + join({kInstructionSets.begin(), kInstructionSets.end()}));
+  CLI::Option* const version = app.set_version_flag("-V,--version", describe_version(contains(arguments, "--json")),
+                                                    "Print the version and the git revision");
+  bool json = false;  // only declared: --version is processed before this flag is set
+  app.add_flag("--json", json, "With --version: print one JSON object")->needs(version);
   app.get_formatter()->column_width(36);
   app.get_formatter()->label("REQUIRED", "(required)");
   app.require_subcommand(1);
   app.footer(kProgramNotes);
+  if (arguments[0] == "help") {  // "help", "help COMMAND": like "--help", "COMMAND --help"
+    arguments[0] = "--help";
+    std::ranges::rotate(arguments, arguments.begin() + 1);
+  }
   // Only the command that is named is declared, because declaring all commands takes longer than executing most of
   // them.
   const auto named = std::ranges::find(kCommands, arguments[0], &Command::name);
@@ -174,7 +207,7 @@ int program_main(int argc, char** argv, const Catalogues& catalogues) {
     } catch (const std::exception& error) {
       return report_error(message_of(error), kFailure);
     } catch (const Stopped&) {
-      return report_error(std::string("stopped by ") + StopRequest::name(StopRequest::signal()), kStoppedEarly);
+      return report_error("stopped by " + stop_words(StopRequest::name(StopRequest::signal())), kStoppedEarly);
     }
   };
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then an error that can be reported

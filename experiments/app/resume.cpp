@@ -26,7 +26,9 @@ void resume(const ResumeArguments& arguments, Session& session) {
   if (!extension.generations && !extension.evaluations && locked.contents.state == StudyState::finished) {
     const Study study = study_to_continue(locked.contents, arguments.file, session.catalogues);
     const auto diagnosis = diagnose(locked.contents, study.problem.get());
-    if (!arguments.common.quiet)
+    if (arguments.common.json)
+      print_json(summary_json(locked.contents, diagnosis, collect_failures(locked.contents, study.problem.get())));
+    else if (!arguments.common.quiet)
       std::cout << summary_text(locked.contents, study, diagnosis)
                 << "the study is finished; --generations or --evaluations extend its last stage\n";
     report_diagnosis(diagnosis, arguments.common, session);

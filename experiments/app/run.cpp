@@ -96,7 +96,7 @@ void run(const RunArguments& arguments, Session& session) {
   options.functions = study.problem->parts().functions->caller;
   if (!arguments.common.quiet) {
     options.cost = measured_cost(study, session);
-    print_estimate(study, options.cost, arguments.seeds, threads_of(arguments.common));
+    if (!arguments.common.json) print_estimate(study, options.cost, arguments.seeds, threads_of(arguments.common));
   }
   if (arguments.seeds > 1) {
     run_seeds(study, output, arguments, options, session);

@@ -50,7 +50,8 @@ void add_running_options(CLI::App& command, RunningArguments& arguments) {
   add_threads(command, arguments.threads);
   add_workers(command, arguments.workers);
   add_option(command, "--time T", arguments.time, "Stop with a checkpoint after this time, such as 90 or \"10 min\"");
-  command.add_flag("--quiet", arguments.quiet, "Print errors and warnings only");
+  command.add_flag("-q,--quiet", arguments.quiet, "Print errors and warnings only");
+  command.add_flag("--json", arguments.json, "Print the results as one JSON object, numbers in full precision");
 }
 
 int threads_of(const RunningArguments& arguments) {
@@ -86,40 +87,60 @@ void report_diagnosis(const std::optional<Diagnosis>& diagnosis, const RunningAr
   if (arguments.quiet) std::cerr << session.program << ": " << one_line_summary(*diagnosis) << '\n';
 }
 
+namespace {
+
+/// Throws StorageError if the results could not be written, and std::runtime_error if an exact volume contradicts its
+/// certified bounds.
+void throw_failures(const RunEnd& end) {
+  std::cout << std::flush;
+  if (end.write_error) throw StorageError(*end.write_error);
+  if (const auto errors = contradicted(end.outcome.contents); !errors.empty())
+    throw std::runtime_error(join(errors, "; "));
+}
+
+}  // namespace
+
+std::string stop_words(const std::string& cause) {
+  return cause + (cause == "SIGINT" ? " (Ctrl-C)" : "") + ", exit code " + std::to_string(kStoppedEarly);
+}
+
 void print_run_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
                    Session& session) {
   const RunOutcome& outcome = end.outcome;
   const auto diagnosis = diagnose(outcome.contents, study.problem.get());
+  if (arguments.json) {
+    Json json = summary_json(outcome.contents, diagnosis, collect_failures(outcome.contents, study.problem.get()));
+    json["file"] = file;
+    json["stopped_by"] = text_or_null(outcome.stopped);
+    print_json(json);
+    session.exit_code = !outcome.stopped.empty() ? kStoppedEarly : diagnosis ? kNothingFeasible : session.exit_code;
+    throw_failures(end);
+    return;
+  }
   if (!arguments.quiet || end.write_error) std::cout << summary_text(outcome.contents, study, diagnosis);
   if (!outcome.stopped.empty()) {
-    // The following lines are printed even with --quiet, because the results are not final.
-    std::cout << "stopped by " << outcome.stopped << " after " << outcome.contents.evaluations() << " evaluations";
+    // This is printed even with --quiet, because the results are not final.
+    std::cout << "stopped by " << stop_words(outcome.stopped) << ", after " << outcome.contents.evaluations()
+              << " evaluations";
     if (!end.write_error) std::cout << "; resume with: " << command_text(session, {"resume", file_argument(file)});
     std::cout << '\n';
     session.exit_code = kStoppedEarly;
   } else if (!arguments.quiet) {
     const std::string exchange =
         ranks::size() > 1 ? formatted("messages between ranks %.1f %% and ", 100 * outcome.exchange_share) : "";
-    char line[300];
-    std::snprintf(line, sizeof line,
-                  "this run: %lld evaluations in %s, parallel efficiency %.0f %% on %s, %scheckpoints %.1f %% of "
-                  "the time\n",
-                  static_cast<long long>(outcome.evaluations), duration_text(outcome.seconds).c_str(),
-                  100 * outcome.parallel_efficiency, outcome.team.c_str(), exchange.c_str(),
-                  100 * outcome.checkpoint_share);
-    std::cout << (outcome.evaluations > 0 ? line : "the study was already finished: no new evaluations\n");
+    // The shares of shorter runs [s] say little. With several ranks, the line also confirms that they worked together.
+    constexpr double kShort = 1;
+    if (outcome.evaluations == 0)
+      std::cout << "the study was already finished: no new evaluations\n";
+    else if (outcome.seconds >= kShort || ranks::size() > 1)
+      std::cout << "this run: " << outcome.evaluations << " evaluations in " << duration_text(outcome.seconds)
+                << formatted(", parallel efficiency %.0f %% on ", 100 * outcome.parallel_efficiency) << outcome.team
+                << ", " << exchange << formatted("checkpoints %.1f %% of the time\n", 100 * outcome.checkpoint_share);
     if (!end.write_error)
       std::cout << "written to " << file << '\n' << next_step(session, {"report", file_argument(file)});
   }
-  if (end.write_error) {
-    std::cout << std::flush;
-    throw StorageError(*end.write_error);
-  }
-  if (outcome.stopped.empty()) report_diagnosis(diagnosis, arguments, session);
-  if (const auto errors = contradicted(outcome.contents); !errors.empty()) {
-    std::cout << std::flush;
-    throw std::runtime_error(join(errors, "; "));
-  }
+  if (outcome.stopped.empty() && !end.write_error) report_diagnosis(diagnosis, arguments, session);
+  throw_failures(end);
 }
 
 }  // namespace pkm

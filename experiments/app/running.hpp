@@ -15,7 +15,7 @@ namespace pkm {
 struct RunningArguments {
   int threads = 0, workers = 0;
   std::string time;
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
 /// Declares --threads.
@@ -25,7 +25,7 @@ void add_workers(CLI::App& command, int& workers);
 /// Starts the worker processes for the Python functions of a study, if it calls any.
 /// @param file  the TOML file or study file, in whose folder the Python functions are
 void start_python(const Study& study, const std::string& file, int workers, int threads);
-/// Declares --threads, --workers, --time and --quiet.
+/// Declares --threads, --workers, --time, --quiet and --json.
 void add_running_options(CLI::App& command, RunningArguments& arguments);
 
 /// Number of threads that this MPI rank uses.
@@ -52,8 +52,9 @@ RunEnd execute_run(const std::function<RunOutcome()>& run);
 /// @param diagnosis  std::nullopt: the study found a feasible design
 void report_diagnosis(const std::optional<Diagnosis>& diagnosis, const RunningArguments& arguments, Session& session);
 
-/// Prints the results of a run and sets the exit code. After that, throws StorageError if the results could not be
-/// written to the file, and std::runtime_error if an exact volume contradicts its certified bounds.
+/// Prints the results of a run, with --json as one JSON object, and sets the exit code. After that, throws StorageError
+/// if the results could not be written to the file, and std::runtime_error if an exact volume contradicts its certified
+/// bounds.
 void print_run_end(const RunEnd& end, const Study& study, const std::string& file, const RunningArguments& arguments,
                    Session& session);
 

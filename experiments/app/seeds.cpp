@@ -46,13 +46,15 @@ class SeedProgress final : public Progress {
 
 /// Results of all seeds: one table row for each, and the values from which the spread is computed.
 struct SeedTable {
-  bool pareto;  ///< true: there are several objectives, and the seeds are compared by their hypervolumes
+  bool pareto;       ///< true: there are several objectives, and the seeds are compared by their hypervolumes
+  std::string unit;  ///< of the objective
   int feasible_seeds = 0;
   std::vector<Row> rows = {{"seed", pareto ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};
   std::string note = {};  ///< note of the first seed that has a note
   /// Diagnosis of the first seed that found no feasible design; std::nullopt: all seeds found one.
   std::optional<Diagnosis> diagnosis = {};
+  std::vector<Json> summaries = {};      ///< results of the seeds, for --json
   std::vector<std::string> errors = {};  ///< messages on exact volumes that contradict their certified bounds
 
   void add(const Study& study, const StudyContents& contents, const std::string& file) {
@@ -65,10 +67,10 @@ struct SeedTable {
     if (!diagnosis) diagnosis = nothing;
     const bool feasible = !nothing && objective(final.best) && final.best->status == Status::feasible;
     feasible_seeds += feasible;
-    const auto keep = [feasible](std::optional<double> value, std::vector<double>& all) -> std::string {
+    const auto keep = [this, feasible](std::optional<double> value, std::vector<double>& all) -> std::string {
       if (!feasible || !value) return "";
       all.push_back(*value);
-      return digits(*value);
+      return pareto ? digits(*value) : result_text(*value, unit);
     };
     const auto value = pareto ? evolved_hypervolume(study, contents) : objective(final.best);
     for (const std::string& sentence : contradicted(contents))
@@ -78,6 +80,8 @@ struct SeedTable {
                                   : fails  ? "outside certified bounds"
                                            : "nothing feasible";
     seconds.push_back(contents.seconds);
+    summaries.push_back(summary_json(contents, nothing, collect_failures(contents, study.problem.get())));
+    summaries.back()["file"] = file;
     if (note.empty() && !contents.notes.empty())
       note = "note of seed " + std::to_string(contents.seed) + ": " + printable(join(contents.notes, "; ")) + '\n';
     rows.push_back({std::to_string(contents.seed), best_text, pareto ? "" : keep(objective(final.best_exact), exact),
@@ -90,7 +94,8 @@ struct SeedTable {
         std::ranges::sort(values);
         return values.empty() ? std::string() : text(pick(values));
       };
-      rows.push_back({name, of(best, digits), of(exact, digits), "", of(seconds, duration_text), ""});
+      const auto text = [this](double value) { return pareto ? digits(value) : result_text(value, unit); };
+      rows.push_back({name, of(best, text), of(exact, text), "", of(seconds, duration_text), ""});
     };
     row("minimum", [](const std::vector<double>& v) { return v.front(); });
     row("median", [](const std::vector<double>& v) { return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]); });
@@ -108,7 +113,7 @@ void check_files(const std::vector<std::string>& files, const Study& study, cons
 }
 
 void print_diagnosis(const SeedTable& table, const RunArguments& arguments, Session& session) {
-  if (!arguments.common.quiet)
+  if (!arguments.common.quiet && !arguments.common.json)
     std::cout << "diagnosis: " << table.diagnosis->finding << ": " << table.diagnosis->sentence << '\n'
               << reasons_text(table.diagnosis->reasons);
   report_diagnosis(table.diagnosis, arguments.common, session);
@@ -119,7 +124,8 @@ void print_diagnosis(const SeedTable& table, const RunArguments& arguments, Sess
 void print_next_step(const std::string& output, std::uint64_t first, const std::vector<std::string>& files,
                      const RunArguments& arguments, const Session& session) {
   if (session.exit_code == kStoppedEarly) {
-    std::cout << "stopped; resume with: " << session.program << " run " << quoted(file_argument(arguments.study));
+    std::cout << "stopped, exit code " << kStoppedEarly << "; resume with: " << session.program << " run "
+              << quoted(file_argument(arguments.study));
     for (const std::string& word : arguments.changes.arguments()) std::cout << ' ' << quoted(word);
     std::cout << " --seeds " << arguments.seeds << " --seed " << first << " --resume --output "
               << quoted(file_argument(output)) << '\n';
@@ -145,7 +151,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   for (int i = 0; i < arguments.seeds; ++i) files.push_back(seed_file(output, first + static_cast<std::uint64_t>(i)));
   check_files(files, study, arguments);
 
-  SeedTable table{study.problem->objectives().size() > 1};
+  SeedTable table{study.problem->objectives().size() > 1, study.problem->objectives()[0].unit};
   const auto screen = make_progress(arguments.common);
   SeedProgress progress(*screen, arguments.seeds);
   // The reason why the results of a seed are not in its file; std::nullopt: they are.
@@ -172,7 +178,9 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   }
   screen->finish();
   table.add_spread();
-  if (!arguments.common.quiet || write_error)
+  if (arguments.common.json)
+    print_json({{"name", study.name}, {"requested", arguments.seeds}, {"seeds", table.summaries}});
+  else if (!arguments.common.quiet || write_error)
     std::cout << printable(study.name) << ", " << table.seconds.size() << " of " << arguments.seeds << " seeds\n"
               << aligned(table.rows) << table.feasible_seeds << " of " << table.seconds.size()
               << " seeds ended feasible\n"
@@ -181,7 +189,7 @@ void run_seeds(Study& study, const std::string& output, const RunArguments& argu
   if (!table.errors.empty()) throw std::runtime_error(join(table.errors, "; "));
   if (session.exit_code == kDone && table.feasible_seeds == 0 && table.diagnosis)
     print_diagnosis(table, arguments, session);
-  print_next_step(output, first, files, arguments, session);
+  if (!arguments.common.json) print_next_step(output, first, files, arguments, session);
 }
 
 }  // namespace pkm

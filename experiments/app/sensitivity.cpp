@@ -28,7 +28,7 @@ void report_gradients(const std::vector<Parameter>& parameters, const std::vecto
   for (const std::size_t i : order) {
     if (std::ranges::all_of(gradients, [i](const QuantityGradient& g) { return g.by[i] == 0; })) continue;
     Row& row = rows.emplace_back(Row{parameters[i].name, display_unit(parameters[i].unit).name});
-    for (const QuantityGradient& g : gradients) row.push_back(g.by[i] == 0 ? "0" : formatted("%+.4g", per_unit(g, i)));
+    for (const QuantityGradient& g : gradients) row.push_back(g.by[i] == 0 ? "0" : signed_digits(per_unit(g, i)));
   }
   out.add_table("sensitivities: derivatives with all other parameters fixed", rows);
   for (const QuantityGradient& g : gradients) out.json["sensitivities"][g.name] = values_by_name(parameters, g.by);
@@ -81,8 +81,8 @@ void report_contributions(const std::vector<Parameter>& parameters, const std::v
         {"", "tolerance", "change" + (g.unit == "1" ? "" : " [" + g.unit + "]"), "share of the variance [%]"}};
     for (const auto& [contribution, i] : contributions) {
       const DisplayUnit unit = display_unit(parameters[i].unit);
-      rows.push_back({parameters[i].name, "+-" + formatted("%.6g", each[i] / unit.size) + " " + unit.name,
-                      formatted("%.4g", contribution), formatted("%.1f", 100 * contribution * contribution / squares)});
+      rows.push_back({parameters[i].name, "+-" + digits(each[i] / unit.size) + " " + unit.name, digits(contribution),
+                      formatted("%.1f", 100 * contribution * contribution / squares)});
     }
     out.add_table("contributions to " + g.name, rows);
   }
@@ -98,8 +98,8 @@ void report_worst_cases(const DesignProblem& problem, const DesignReport& report
   for (std::size_t k = 0; k < gradients.size(); ++k) {
     const QuantityGradient& g = gradients[k];
     const auto [worst, rss, evaluated] = worst_case(problem, report, gradients, k, each);
-    rows.push_back({g.name, number(g.value, g.unit), number(worst, g.unit), number(evaluated, g.unit),
-                    "+-" + formatted("%.3g", rss)});
+    rows.push_back({g.name, result_text(g.value, g.unit), result_text(worst, g.unit), result_text(evaluated, g.unit),
+                    "+-" + result_text(rss, g.unit)});
     out.json["worst_case"][g.name] = {{"nominal", g.value},
                                       {"first_order", worst},
                                       {"evaluated", std::isnan(evaluated) ? Json() : Json(evaluated)},

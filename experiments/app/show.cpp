@@ -35,7 +35,8 @@ std::string history(const StudyContents& contents) {
       if (front)
         best = digits(stage.front->hypervolume[g]);
       else if (list.best_row[g] >= 0)
-        best = digits(stage.table.objective_row(static_cast<std::size_t>(list.best_row[g]))[0]);
+        best = result_text(stage.table.objective_row(static_cast<std::size_t>(list.best_row[g]))[0],
+                           contents.problem.objectives[0].unit);
       rows.push_back({std::to_string(g), std::to_string(rows_so_far), best,
                       formatted("%.0f %%", 100 * list.feasible_share[g]), formatted("%.2g", list.diversity[g]),
                       duration_text(list.seconds[g])});

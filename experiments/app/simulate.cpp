@@ -91,7 +91,7 @@ std::string simulate_target(const Target& target, const SimulateArguments& argum
   for (std::size_t i = 0; i < info.coordinates.size(); ++i) {
     const auto& [name, unit] = info.coordinates[i];
     rows.push_back(
-        {name, position(first.pose[i], unit), position(last.pose[i], unit), number(last.velocity[i], unit + "/s")});
+        {name, number(first.pose[i], unit), number(last.pose[i], unit), number(last.velocity[i], unit + "/s")});
   }
   out.add_table("pose", rows);
   std::vector<Row> energy = {

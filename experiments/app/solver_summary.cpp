@@ -19,20 +19,21 @@ constexpr double kZeroSensitivity = 1e-6;
 
 /// Table cells with the objective of a start at its first and at its last design: two cells or, with several
 /// objectives, one cell for each of them.
-Row objective_cells(const StageRecord& stage, const StartOutcome& start) {
+Row objective_cells(const ProblemRecord& problem, const StageRecord& stage, const StartOutcome& start) {
   const auto first = static_cast<std::size_t>(start.first_row), end = static_cast<std::size_t>(start.end_row);
   const auto from = stage.table.objective_row(first), to = stage.table.objective_row(end);
   const auto& status = stage.table.status;
+  const auto value_text = [&](std::size_t k, double value) { return result_text(value, problem.objectives[k].unit); };
   if (from.size() == 1) {
     const auto text = [&](std::size_t row, double value) {
       if (status[row] == Status::failed) return std::string("failed");
-      return digits(value) + (status[row] == Status::feasible ? "" : " (infeasible)");
+      return value_text(0, value) + (status[row] == Status::feasible ? "" : " (infeasible)");
     };
     return {text(first, from[0]), text(end, to[0])};
   }
   Row texts(from.size(), "failed");
   for (std::size_t k = 0; status[first] != Status::failed && k < from.size(); ++k)
-    texts[k] = formatted("%.6g", from[k]) + " -> " + formatted("%.6g", to[k]);
+    texts[k] = value_text(k, from[k]) + " -> " + value_text(k, to[k]);
   return texts;
 }
 
@@ -76,7 +77,7 @@ std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) 
     const StartOutcome& start = stage.starts[order[k]];
     const bool feasible = stage.table.status[static_cast<std::size_t>(start.end_row)] == Status::feasible;
     Row& row = rows.emplace_back(Row{"  " + start.origin, std::to_string(start.rows)});
-    std::ranges::copy(objective_cells(stage, start), std::back_inserter(row));
+    std::ranges::copy(objective_cells(problem, stage, start), std::back_inserter(row));
     if (one) row.push_back(optimum[order[k]] ? std::to_string(optimum[order[k]]) : "-");
     row.push_back(formatted("%.1e", start.optimality));
     row.push_back(start.stop + (start.message.empty() ? "" : " (" + start.message + ")") +
@@ -95,15 +96,14 @@ std::string optimality_text(const ProblemRecord& problem, const StageRecord& sta
   if (!record.active.empty()) {
     std::vector<Row> rows = {{"", "", "per unit", "multiplier"}};
     for (const ActiveRecord& a : sorted_within_units(record.active, [](const ActiveRecord& a) { return a.multiplier; }))
-      rows.push_back(
-          {a.name, a.kind, display_unit(a.unit).name, formatted("%.4g", a.multiplier * display_unit(a.unit).size)});
+      rows.push_back({a.name, a.kind, display_unit(a.unit).name, digits(a.multiplier * display_unit(a.unit).size)});
     text += format_titled_table("active constraints, and the gain of " + of + " if they are relaxed", rows);
   }
   std::vector<Row> rows = {{"", "", "per unit", "as built", "reoptimised"}};
   for (const SensitivityRecord& s : sorted_within_units(without_residuals(record.sensitivities), influence)) {
     const bool varies = std::isnan(s.reoptimised);
     const auto text_of = [size = display_unit(s.unit).size](double value) {
-      return value == 0 ? "0" : formatted("%+.4g", value * size);
+      return value == 0 ? "0" : signed_digits(value * size);
     };
     rows.push_back({s.parameter, varies ? "varies" : "fixed", display_unit(s.unit).name, text_of(s.as_built),
                     varies ? "" : text_of(s.reoptimised)});

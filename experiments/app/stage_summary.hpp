@@ -24,9 +24,10 @@ Json optimality_json(const OptimalityRecord& record);
 /// JSON with all points of the front, and its quality indicators after each generation.
 Json front_json(const ProblemRecord& problem, const StageRecord& stage);
 
-/// The value of a variable: the name of a choice, or the number as format() writes it.
-std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value,
-                          std::string (*format)(double));
+/// The value of a variable: the name of a choice, or the number with its unit.
+std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value);
+/// The same in a given unit, without its name.
+std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value, const DisplayUnit& unit);
 Json variable_json(const ProblemRecord& problem, std::size_t variable, double value);
 
 /// The design, objectives, constraints and other values of an evaluation, by name.

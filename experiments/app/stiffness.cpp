@@ -96,8 +96,7 @@ void report_deflection(const MatrixXd& C, const std::vector<std::string>& wrench
   for (Index i = 0; i < 6; ++i) {
     const std::string& name = kComponents[static_cast<std::size_t>(i)];
     json["deflection"].push_back(displacement[i]);
-    const std::string micrometres = " (" + formatted("%.6g", 1e6 * displacement[i]) + " um)";
-    moved.push_back({name, i < 3 ? number(displacement[i], "m") + micrometres : position(displacement[i], "rad")});
+    moved.push_back({name, number(displacement[i], i < 3 ? "m" : "rad")});
   }
   out.add_table("deflection under the wrench", moved);
 }

@@ -1,5 +1,6 @@
 #include "experiments/app/summary.hpp"
 
+#include <cmath>
 #include <sstream>
 
 #include "engine/core/catalogue.hpp"
@@ -13,15 +14,35 @@
 namespace pkm {
 namespace {
 
+constexpr std::string_view kExactSuffix = ", exact";  // of the name of a line of exact values, see DesignTable
+
+/// Returns true if the row of exact values prints no more than the row of the values by voxels before it.
+bool repeats(const Row& exact, const Row& voxels) {
+  for (std::size_t i = 1; i < exact.size(); ++i)
+    if (!exact[i].empty() && exact[i] != voxels[i]) return false;
+  return true;
+}
+
 /// A row for each variable, objective and constraint; columns: best, rounded, baseline, gain ("+1.52 %"), references.
 std::vector<Row> table(const StudyContents& contents, const Study& study) {
   const DesignTable designs = design_table(contents, study.references);
   const ProblemRecord& problem = contents.problem;
-  const auto append = [&](Row& row, const DesignTable::Line& line, const std::vector<std::optional<double>>& values) {
+  /// Adds values, all in the same unit, to a row.
+  const auto append = [&](Row& row, const DesignTable::Line& line, const std::vector<std::optional<double>>& values,
+                          const DisplayUnit& unit) {
     for (const auto& value : values) {
+      if (value && line.kind == "certified") {  // bounds are rounded outwards
+        const int direction = line.name.ends_with("at least") ? -1 : line.name.ends_with("at most") ? 1 : 0;
+        const int count = std::max(7, significant_digits());
+        const double shown = *value / unit.size;
+        row.push_back(direction == 0 ? digits(shown, count) : directed_digits(shown, count, direction));
+        continue;
+      }
       const Variable* const variable = line.kind == "variable" ? find_named(problem.variables, line.name) : nullptr;
-      const auto number = [&] { return static_cast<std::size_t>(variable - problem.variables.data()); };
-      row.push_back(!value ? "" : variable ? variable_text(problem, number(), *value, digits) : digits(*value));
+      const auto index = [&] { return static_cast<std::size_t>(variable - problem.variables.data()); };
+      row.push_back(!value     ? ""
+                    : variable ? variable_text(problem, index(), *value, unit)
+                               : digits(*value / unit.size));
     }
   };
   std::vector<Row> rows = {{"", ""}};
@@ -29,21 +50,37 @@ std::vector<Row> table(const StudyContents& contents, const Study& study) {
   if (designs.has_baseline()) rows[0].push_back("gain");
   for (const auto& r : study.references) rows[0].push_back(r.name);
   for (const DesignTable::Line& line : designs.lines) {
-    Row& row = rows.emplace_back(Row{line.name + (line.kind == "constraint" ? " margin" : ""), line.unit});
-    append(row, line, line.values);
+    double greatest = 0;
+    for (const auto* const values : {&line.values, &line.published})
+      for (const auto& value : *values)
+        if (value) greatest = std::fmax(greatest, std::fabs(*value));
+    const DisplayUnit unit =
+        line.kind == "variable" ? display_unit(line.unit, greatest) : result_unit(line.unit, greatest);
+    Row row = {line.name + (line.kind == "constraint" ? " margin" : ""), unit.name};
+    append(row, line, line.values, unit);
     if (designs.has_baseline())
       row.push_back(line.gain ? formatted("%+.2f %%", line.gain->percent) + (line.gain->worse ? ", worse" : "") : "");
-    append(row, line, line.published);
+    append(row, line, line.published, unit);
+    if (line.name.ends_with(kExactSuffix) && repeats(row, rows.back())) continue;
+    rows.push_back(std::move(row));
   }
   return rows;
+}
+
+/// A sentence on an active bound or constraint; in the file it has the bounds of variables in SI units.
+std::string active_text(const ProblemRecord& problem, const std::string& sentence) {
+  for (const Variable& v : problem.variables)
+    for (const auto& [which, bound] : {std::pair(" at its lower bound ", v.lower), {" at its upper bound ", v.upper}})
+      if (sentence.starts_with(v.name + which)) return v.name + which + display_text(bound, v.unit);
+  return sentence;
 }
 
 /// Text that states the most violated constraint of a design and its margin; "" if all are satisfied.
 std::string violation(const StudyContents& contents, const DesignRecord& best) {
   const auto worst = most_violated(best.margins);
   if (!worst) return "";
-  return contents.problem.margins[*worst].name + " is violated, margin " + digits(best.margins[*worst]) + " " +
-         contents.problem.margins[*worst].unit;
+  return contents.problem.margins[*worst].name + " is violated, margin " +
+         result_text(best.margins[*worst], contents.problem.margins[*worst].unit);
 }
 
 /// The reason why the rounded design should not be used, as the end of a sentence; "" if it can be used.
@@ -121,10 +158,10 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
       out << (status == Status::feasible ? "best so far:" : "best so far, which is " + words(status) + ":");
       for (std::size_t i = 0; i < contents.problem.variables.size(); ++i)
         out << ' ' << printable(contents.problem.variables[i].name) << " = "
-            << printable(variable_text(contents.problem, i, stage.table.design(row)[i], digits));
+            << printable(variable_text(contents.problem, i, stage.table.design(row)[i]));
       for (std::size_t i = 0; i < contents.problem.objectives.size(); ++i)
         out << ", " << printable(contents.problem.objectives[i].name) << " = "
-            << digits(stage.table.objective_row(row)[i]);
+            << result_text(stage.table.objective_row(row)[i], contents.problem.objectives[i].unit);
       out << '\n';
     }
     return out.str();
@@ -149,7 +186,9 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
         << '\n';
   const StageRecord& of_best = contents.best_stage();
   out << optimality_text(contents.problem, of_best.optimality ? of_best : contents.stages.back());
-  if (!final.active.empty()) out << "active: " << join(final.active, "; ") << '\n';
+  std::vector<std::string> active;
+  for (const std::string& sentence : final.active) active.push_back(active_text(contents.problem, sentence));
+  if (!active.empty()) out << "active: " << join(active, "; ") << '\n';
   if (final.best->touches_box)
     out << "warning: feasible cells of the best design touch the box; a larger box may contain more workspace\n";
   for (const auto& r : study.references)

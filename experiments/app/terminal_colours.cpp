@@ -33,7 +33,7 @@ constexpr Label kLabels[] = {{"active", kYellow, kYellow},
                              {"contradiction", kRed, kPlain},
                              {"diagnosis", kRed, kPlain},
                              {"next", kFaint, kBold},
-                             {"stopped; resume with", kYellow, kBold}};
+                             {"stopped, exit code 3; resume with", kYellow, kBold}};
 
 /// The line with its label coloured; "" if the line has no label.
 std::string coloured_label(Text line) {

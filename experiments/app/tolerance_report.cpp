@@ -9,21 +9,17 @@ namespace {
 
 using generic::ToleranceViolation;
 
-/// Text of a tolerance in a unit that suits its size, with four digits, rounded down: "+-0.1181 mm".
+/// Text of a tolerance in a unit that suits its size, rounded down: "+-0.1181 mm".
 std::string tolerance_text(double tolerance, const std::string& si_unit) {
   const DisplayUnit unit = display_unit(si_unit);
-  double value = tolerance / unit.size;
-  if (value > 0) {
-    const double digit = std::pow(10, std::floor(std::log10(value)) - 3);
-    value = std::floor(value / digit) * digit;
-  }
-  return "+-" + formatted("%.4g", value) + (unit.name == "1" ? "" : " " + unit.name);
+  return "+-" + directed_digits(tolerance / unit.size, significant_digits(), -1) +
+         (unit.name == "1" ? "" : " " + unit.name);
 }
 
-/// Text of a value in a unit that suits its size, with seven digits.
+/// Text of a value in a unit that suits its size, with at least seven digits, because the robots differ little.
 std::string value_text(double value, const std::string& si_unit) {
   const DisplayUnit unit = display_unit(si_unit);
-  return formatted("%.7g", value / unit.size) + (unit.name == "1" ? "" : " " + unit.name);
+  return digits(value / unit.size, 7) + (unit.name == "1" ? "" : " " + unit.name);
 }
 
 }  // namespace
@@ -101,7 +97,7 @@ std::string ToleranceReport::text_of(double scale) const {
 
 std::string ToleranceReport::relative_text(double scale) const {
   if (scale == found_.scale) return "the tolerances below";
-  return found_.scale > 0 ? formatted("%.4g times these tolerances", scale / found_.scale)
+  return found_.scale > 0 ? digits(scale / found_.scale) + " times these tolerances"
                           : "the deviations in the last column";
 }
 

@@ -89,21 +89,18 @@ void report_tool_error(const Target& target, const std::string& mode, const Moti
   }
   const bool redundant = info.joints.size() > info.coordinates.size();
   const AxisMatrix<double> inverse = redundant ? pseudo_inverse(influence->G) : reversed(*influence).G;
-  const auto with_micrometres = [](double error) {
-    return number(error, "m") + " (" + formatted("%.6g", 1e6 * error) + " um)";
-  };
   std::vector<Row> rows;
   const std::vector<double> worst = max_components(inverse, errors);
   for (std::size_t i = 0; i < worst.size(); ++i) {
     const AxisInfo& axis = info.coordinates[i];
-    rows.push_back({axis.name, axis.turns() ? position(worst[i], axis.unit) : with_micrometres(worst[i])});
+    rows.push_back({axis.name, number(worst[i], axis.unit)});
   }
   const auto [translation, rotation] = max_twist((T ? *T : translation_map(info.coordinates)) * inverse, errors);
-  rows.push_back({"translation", with_micrometres(translation)});
+  rows.push_back({"translation", number(translation, "m")});
   Json json = {{"coordinates", values_by_name(info.coordinates, worst)}, {"translation", translation}};
   if (T && std::ranges::any_of(info.coordinates, &AxisInfo::turns)) {
     json["rotation"] = rotation;
-    rows.push_back({"rotation", position(rotation, "rad")});
+    rows.push_back({"rotation", number(rotation, "rad")});
   }
   if (exact) {
     const auto corner = worst_corner(target, mode, at.pose, inverse, errors);
@@ -112,7 +109,7 @@ void report_tool_error(const Target& target, const std::string& mode, const Moti
       const std::vector<double> of_coordinates(corner->begin(), corner->end() - 1);
       json["worst_corner"] = {{"coordinates", values_by_name(info.coordinates, of_coordinates)},
                               {"translation", corner->back()}};
-      rows.push_back({"translation, exact", with_micrometres(corner->back())});
+      rows.push_back({"translation, exact", number(corner->back(), "m")});
     } else {
       rows.push_back(
           {"translation, exact", "unknown: for one combination of the extreme joint errors no pose was found"});

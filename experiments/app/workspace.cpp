@@ -3,7 +3,7 @@
 
 #include <filesystem>
 #include <limits>
-#include <numbers>
+#include <optional>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/team.hpp"
@@ -15,6 +15,8 @@
 #include "engine/report/html_page.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/workspace/pose_quantities.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
+#include "engine/workspace/visualisation_plan.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/component_list.hpp"
 #include "experiments/app/coordinate_ranges.hpp"
@@ -58,6 +60,44 @@ bool touches(const WorkspaceFields& workspace, const std::array<bool, 3>& ranges
     }
   }
   return false;
+}
+
+/// Fields cost up to 100 times as much as the test whether a pose is feasible. If no file needs them at every cell,
+/// those of a finer grid than this one are computed on a grid with kPictureCells cells along each axis.
+bool needs_coarse_fields(const WorkspacePlan& plan, const std::vector<std::string>& files) {
+  double cells = 1, picture_cells = 1;
+  for (const std::int64_t n : plan.voxels()->cells) {
+    cells *= static_cast<double>(n);
+    picture_cells *= static_cast<double>(n > 1 ? kPictureCells : 1);
+  }
+  return files.empty() && cells > picture_cells;
+}
+
+/// The plan with at most kPictureCells cells along each axis.
+WorkspacePlan with_picture_cells(WorkspacePlan plan) {
+  VoxelOptions voxels = *plan.voxels();
+  for (std::int64_t& n : voxels.cells) n = std::min(n, kPictureCells);
+  plan.method = voxels;
+  return plan;
+}
+
+/// The feasible cells of a plan, as a workspace that has no other field.
+/// @param coarse  the same workspace on another grid
+WorkspaceFields feasible_cells_only(const Target& target, const WorkspacePlan& plan, const WorkspaceFields& coarse) {
+  const VoxelMap map =
+      voxel_map(*target.mechanism, target.parameters, visualisation_plan(target.info(), plan, {1, 1, 1}));
+  WorkspaceFields found = coarse;
+  found.fields = {coarse.field("feasible")};
+  found.fields.front().values.assign(map.feasible.begin(), map.feasible.end());
+  for (std::size_t i = 0; i < found.axes.size(); ++i) {
+    found.axes[i].cells = map.cells[i];
+    found.axes[i].lower = map.lower[i];
+    found.axes[i].upper = map.upper[i];
+  }
+  WorkspaceResult<double> summary;
+  summarise(found.grid(), map, summary, found.axes.size());
+  found.volume = summary.volume;
+  return found;
 }
 
 /// Throws ConfigError if an output that the user requests is not available for these swept coordinates.
@@ -129,11 +169,8 @@ std::vector<Picture> slice_pictures(const Target& target, const WorkspaceFields&
   const std::string& unit = workspace.volume_unit;
   out.add("area", outline.area, number(outline.area, unit) + ", within the outline drawn");
   std::vector<std::string> fixed;
-  for (const WorkspaceAxis& axis : workspace.fixed)
-    fixed.push_back(axis.name + " = " +
-                    (axis.unit == "rad" ? formatted("%.6g deg", axis.lower * 180 / std::numbers::pi)
-                                        : formatted("%.6g mm", 1e3 * axis.lower)));
-  std::vector<std::string> lines = {workspace_title(target), "area " + formatted("%.4g", outline.area) + " " + unit};
+  for (const WorkspaceAxis& axis : workspace.fixed) fixed.push_back(axis.name + " = " + number(axis.lower, axis.unit));
+  std::vector<std::string> lines = {workspace_title(target), "area " + number(outline.area, unit)};
   if (!fixed.empty()) lines.insert(lines.begin() + 1, join(fixed));
   if (arguments.fields.empty()) return {draw_slice(outline, lines)};
   std::vector<Pose<double>> poses;
@@ -145,7 +182,9 @@ std::vector<Picture> slice_pictures(const Target& target, const WorkspaceFields&
   return pictures;
 }
 
-void report_workspace(const Target& target, const WorkspaceFields& workspace, Printout& out) {
+/// @param of_fields  the workspace whose fields are reported: `workspace` itself, or the same on a coarser grid
+void report_workspace(const Target& target, const WorkspaceFields& workspace, const WorkspaceFields& of_fields,
+                      Printout& out) {
   Json& json = out.json;
   out.add("mechanism", target.info().name);
   if (target.study) out.head.push_back({"study", target.study->name});
@@ -156,7 +195,7 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
     const auto& [coordinate, name, unit, value, upper, cells] = workspace.fixed[i];
     const std::string& why = workspace.fixed_note[i];
     json["fixed"].push_back({{"name", name}, {"value", value}, {"unit", unit}, {"why", why}});
-    out.head.push_back({name, position(value, unit), why});
+    out.head.push_back({name, number(value, unit), why});
     if (const std::string note = large_angle_note({{name, unit}}, {&value, 1}); !note.empty())
       out.head.push_back({"note", note});
   }
@@ -172,9 +211,7 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
     if (extents)
       std::ranges::transform((*extents)[i], feasible.begin(),
                              [&](double end) { return zero_if_rounding_error(end, size); });
-    const auto range = [&axis](const std::array<double, 2>& ends) {
-      return position(ends[0], axis.unit) + " .. " + position(ends[1], axis.unit);
-    };
+    const auto range = [&axis](const std::array<double, 2>& ends) { return range_text(ends[0], ends[1], axis.unit); };
     json["axes"].push_back({{"name", axis.name},
                             {"unit", axis.unit},
                             {"lower", whole[0]},
@@ -193,13 +230,16 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
   json["unit"] = workspace.volume_unit;
   json["touches_box"] = workspace.touches_box;
   out.head.push_back({"feasible cells", std::to_string(feasible) + " of " + std::to_string(workspace.cells())});
-  out.head.push_back({"volume", number(workspace.volume, workspace.volume_unit)});
+  out.head.push_back(
+      {measure_name(workspace.axes.size()),
+       number(workspace.volume, workspace.volume_unit, known_digits_of_voxels(feasible, workspace.axes.size()))});
   if (workspace.touches_box)
     out.head.push_back({"warning", "the feasible set touches the box; it may extend beyond it"});
 
   rows.clear();
   const Unsupported undefined = why_no_conditioning(target.info());
-  for (const WorkspaceField& field : workspace.fields) {
+  json["field_cells"] = of_fields.cells();
+  for (const WorkspaceField& field : of_fields.fields) {
     const auto range = range_of(field);
     json["fields"][field.name] = {{"unit", field.unit},
                                   {"least", range ? Json(range->least) : Json()},
@@ -212,9 +252,11 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, Pr
     // Fields of mixed units state their units in `meaning`.
     const std::string unit = field.unit == "mixed" ? "1" : field.unit;
     if (range && field.name != "feasible")
-      rows.push_back({field.name, position(range->least, unit), position(range->greatest, unit), field.meaning});
+      rows.push_back({field.name, number(range->least, unit), number(range->greatest, unit), field.meaning});
   }
-  out.add_table("fields (minimum and maximum)", rows);
+  const bool is_coarse = of_fields.cells() != workspace.cells();
+  out.add_table(
+      "fields (minimum and maximum" + (is_coarse ? " at " + std::to_string(of_fields.cells()) + " cells)" : ")"), rows);
 }
 
 std::string workspace(const Target& target, const WorkspaceArguments& arguments, Printout& out) {
@@ -240,16 +282,20 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
       plan.home.reset();
       out.head.push_back({"note", "a slice shows all components, not only the one that holds the home pose"});
     }
-    auto ranges_given = set_grid(plan, target, arguments, kPictureCells, kMaxFieldCells);
+    auto ranges_given = set_grid(plan, target, arguments, kPictureCells, kMaxFieldCells, slices);
     expect_axes(swept_axes(plan, target.info(), slices), arguments);
     apply_slices(plan, target, slices, ranges_given);
     const std::vector<RequestedSolid> solids = requested_solids(arguments, target, plan, slices);
     const std::string mode = parse_mode(target.info(), arguments);
     expect_drawn_fields(target, arguments, mode);
     check_outputs(files, target.files, existing);
-    WorkspaceFields found = compute_fields(target, plan, mode);
+    const bool is_coarse = slices.empty() && needs_coarse_fields(plan, files);
+    WorkspaceFields found = compute_fields(target, is_coarse ? with_picture_cells(plan) : plan, mode);
+    std::optional<WorkspaceFields> fine;
+    if (is_coarse) fine = feasible_cells_only(target, plan, found);
     add_exact_fields(target, arguments, found);
     found.touches_box = touches(found, ranges_given);
+    if (fine) fine->touches_box = touches(*fine, ranges_given);
     remove_sliced_axes(found, target.info(), slices);
     write_workspace(arguments, target, found);
     if (!arguments.csv.empty()) write_file(arguments.csv, workspace_table(found).text(), existing);
@@ -259,7 +305,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
           evaluate_shown_designs(*target.mechanism, plan, mode, motions, {target.words, target.parameters});
       write_file(arguments.html, html_page(page_data(views, program_words())), existing);
     }
-    report_workspace(target, found, out);
+    report_workspace(target, fine.value_or(found), found, out);
     if (slices.empty()) report_components(target, plan, out);
     report_solids(solids, target, out);
     if (arguments.ranges) report_ranges(arguments.home, target, mode, out);

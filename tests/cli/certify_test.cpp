@@ -167,7 +167,7 @@ TEST_F(Certify, ReportsSingularPoses) {
   const auto box = run({"certify", cables, "--box", "x=-0.1:0.1,y=-0.1:0.1"});
   EXPECT_EQ(box.exit_code, 1);
   EXPECT_THAT(box.out, HasSubstr("feasible   everywhere in the box\n"));
-  EXPECT_THAT(box.out, HasSubstr("regular    no, singular at x = 0 m, y = 0 m, phi = 0 rad"));
+  EXPECT_THAT(box.out, HasSubstr("regular    no, singular at x = 0 mm, y = 0 mm, phi = 0 deg"));
   EXPECT_THAT(box.out, HasSubstr("det(G^T G) = 0), to working precision"));
   EXPECT_THAT(box.err, HasSubstr("the box is not regular everywhere"));
   folder_.write("flat.toml", "type = \"formulas\"\nduration = 1\nx = \"0.1*t\"\ny = 0\nphi = 0\n");

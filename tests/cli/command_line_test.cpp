@@ -36,14 +36,15 @@ TEST(CliErrors, InvalidInputGivesExitCode2AndOneSentence) {
       {{"evalute"},
        "found the unknown command 'evalute'; expected " + commands +
            " (see 'pkmopt --help'); did you mean 'evaluate'?"},
-      {{"--hlp"}, "found the unknown option '--hlp'; expected one of --help, --version; did you mean '--help'?"},
+      {{"--hlp"},
+       "found the unknown option '--hlp'; expected one of --help, --version, --json; did you mean '--help'?"},
       {{"evaluate"}, "found no design; expected a mechanism, a file in TOML or --from F.h5"},
       {{"pose", mechanism}, "--at: found nothing; expected the pose, or --poses with a table of poses"},
       {{"evaluate", mechanism, "--jsn"},
        "evaluate: found the unknown option '--jsn'; expected one of --help, --from, --baseline, --generation, "
        "--individual, --front, --stage, --set, --limit, --masses, --json, --cells, --samples, --certified, "
        "--designs, --csv, --force, "
-       "--sensitivity, --tolerance, --threads, --workers, --instruction-set; did you mean '--json'?"},
+       "--sensitivity, --tolerance, --threads, --workers, --instruction-set, --digits; did you mean '--json'?"},
       {{"list", "mechanisms", mechanism, "more"},
        "list: found the argument 'more'; expected no further argument (see 'pkmopt list --help')"},
       {{"list", "objectiv"},
@@ -63,7 +64,7 @@ TEST(CliErrors, InvalidInputGivesExitCode2AndOneSentence) {
        "R_s, lambda_u, lambda_d, lambda_s, lambda_p, m_c, kappa, kappa_p, m_p, c_p; did you mean "
        "'l_u'?"},
       {{"evaluate", mechanism, "--set", "a=2kg"},
-       "--set: found a=2kg; expected a number in m, or text with a unit made of um, mm, cm, dm, m, km, in"},
+       "--set: found a=2kg; expected a number in m, or text with a unit made of um, mm, cm, dm, m, km, in, inch, ft"},
       {{"evaluate", mechanism, "--set", "a=0"}, "--set: found a=0; expected a number in [0.001, 100] m"},
       {{"pose", mechanism, "--at", "x=0.4,y=1"},
        "--at: found no value for z, theta; expected values for x, y, z, theta"},

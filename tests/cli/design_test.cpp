@@ -72,7 +72,7 @@ TEST(CliEvaluate, HasTheDocumentedKeysAndUnits) {
                                       "workspace-volume"}));
   const auto text = pkmopt({"evaluate", "4ppa-2par"});
   EXPECT_EQ(text.err, "");
-  EXPECT_THAT(text.out, HasSubstr("  volume          0.550157374606 m^2 rad\n"));
+  EXPECT_THAT(text.out, HasSubstr("  volume          0.5502 m^2 rad\n"));
 }
 
 TEST(CliEvaluate, WarnsIfTheFeasibleSetTouchesTheGivenBox) {
@@ -156,7 +156,7 @@ TEST(CliCheck, PrintsAllDefaults) {
   const auto text = pkmopt({"check", file});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_THAT(text.out, HasSubstr("adaptive: at most 2 % of the run time"));
-  EXPECT_THAT(text.out, HasSubstr("baseline 0.9 m (outside the bounds)"));
+  EXPECT_THAT(text.out, HasSubstr("baseline 900 mm (outside the bounds)"));
   const json found = pkmopt({"check", file, "--json"}).json();
   EXPECT_EQ(found["seed"], 1);
   EXPECT_EQ(found["variables"][1], (json{{"name", "b"}, {"unit", "m"}, {"min", 0.7}, {"max", 1.5}, {"step", nullptr}}));

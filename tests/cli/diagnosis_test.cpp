@@ -31,7 +31,7 @@ TEST(CliDiagnosis, ARunThatFindsNothingIsExplainedWithExitCode4) {
                                  "  no design satisfies conditioning; the closest misses it by 0."));
   EXPECT_THAT(run.out, HasSubstr("least infeasible"));
   const auto text = run.out.substr(run.out.find("diagnosis: "));
-  const std::string diagnosis = text.substr(0, text.find("this run:"));
+  const std::string diagnosis = text.substr(0, std::min(text.find("this run:"), text.find("written to")));
 
   const auto shown = pkmopt({"show", "s.h5"}, folder.path());
   EXPECT_EQ(shown.exit_code, 0) << "show itself has succeeded";

@@ -150,8 +150,8 @@ TEST_F(ExportProgram, WorkspaceAndEvaluateAgree) {
 
 TEST_F(ExportProgram, RoundingErrorsInTheExtentArePrintedAsZero) {
   ASSERT_EQ(run({"workspace", "3crr-r-cru", "--cells", "x=8,y=8,z=8"}), 0) << output_;
-  EXPECT_THAT(output_, HasSubstr("  y   0 m .. 0.4 m "));
-  EXPECT_THAT(output_, HasSubstr(" of 0 m .. 0.4 m "));
+  EXPECT_THAT(output_, HasSubstr("  y    0 .. 400 mm "));
+  EXPECT_THAT(output_, HasSubstr(" of 0 .. 400 mm "));
 }
 
 TEST_F(ExportProgram, AnotherCoordinateCanBeFixed) {

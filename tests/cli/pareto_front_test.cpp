@@ -91,7 +91,7 @@ TEST_F(ParetoFrontProgram, ShowsFrontsAndEvaluatesTheirPoints) {
   EXPECT_THAT(output_, HasSubstr("best workspace-ratio"));
   EXPECT_THAT(output_, HasSubstr("compromise"));
   EXPECT_THAT(output_, HasSubstr("of the front of stage 1"));
-  EXPECT_THAT(output_, HasSubstr("with reference point workspace-ratio 0, conditioning 0"));
+  EXPECT_THAT(output_, HasSubstr("with reference point workspace-ratio 0 rad, conditioning 0"));
 
   const Json printed = show("f.h5");
   const StudyContents contents = read("f.h5");

@@ -53,7 +53,7 @@ TEST(Quantity, IsAFieldOfTheWorkspace) {
 
   const auto plain = pkmopt({"workspace", kExample, "--cells", "12"});
   EXPECT_THAT(plain.out, HasSubstr("largest angle between a rod and its slide"));
-  EXPECT_THAT(plain.out, HasSubstr("deg)")) << "people read degrees";
+  EXPECT_THAT(plain.out, HasSubstr(" deg")) << "people read degrees";
   const auto wrong = pkmopt({"workspace", kExample, "--cells", "4", "--largest-box", "--least", "transmision=0.9"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("did you mean 'transmission'?"));

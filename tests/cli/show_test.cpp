@@ -41,7 +41,7 @@ TEST(CliShow, WorksIfTheStudyTextCannotBeRead) {
   write_study(file, interrupted(Status::feasible));
   const auto shown = pkmopt({"show", file});
   EXPECT_EQ(shown.exit_code, 0) << shown.err;
-  EXPECT_THAT(shown.out, HasSubstr("best so far: a = 0.25, workspace-ratio = 0.125\n"));
+  EXPECT_THAT(shown.out, HasSubstr("best so far: a = 250 mm, workspace-ratio = 0.125 rad\n"));
   EXPECT_THAT(shown.out, HasSubstr("note: this program cannot read the study's text, so references are omitted ("));
   EXPECT_THAT(shown.out, HasSubstr("forgotten"));
 }
@@ -51,7 +51,7 @@ TEST(CliShow, MarksAnInfeasibleBestDesign) {
   const std::string file = folder.path() + "/old.h5";
   write_study(file, interrupted(Status::infeasible));
   EXPECT_THAT(pkmopt({"show", file}).out,
-              HasSubstr("best so far, which is infeasible: a = 0.25, workspace-ratio = 0.125\n"));
+              HasSubstr("best so far, which is infeasible: a = 250 mm, workspace-ratio = 0.125 rad\n"));
 }
 
 TEST(CliShow, ExplainsProblemsOfTheRoundedDesign) {
@@ -79,7 +79,7 @@ TEST(CliShow, ExplainsProblemsOfTheRoundedDesign) {
   c.final->rounded->margins = {-0.5};
   write_study(file, c);
   EXPECT_THAT(pkmopt({"show", file}).out, HasSubstr("the rounded design is infeasible: a = 0.4 m lies outside its "
-                                                    "bounds; rail-length is violated, margin -0.5 m\n"));
+                                                    "bounds; rail-length is violated, margin -500 mm\n"));
 }
 
 }  // namespace

@@ -51,7 +51,8 @@ TEST_F(GaProgram, SignalsStopWithACheckpointAndTheResumeCommand) {
     if (code == 3) {
       ++stopped;
       EXPECT_EQ(read(file).state, StudyState::interrupted);
-      EXPECT_NE(output.find(number == SIGINT ? "stopped by SIGINT after" : "stopped by SIGTERM after"),
+      EXPECT_NE(output.find(number == SIGINT ? "stopped by SIGINT (Ctrl-C), exit code 3, after"
+                                             : "stopped by SIGTERM, exit code 3, after"),
                 std::string::npos);
       EXPECT_NE(output.find("resume with: pkmopt resume " + file), std::string::npos) << output;
       ASSERT_EQ(run({"resume", file}), 0) << output_;
@@ -98,7 +99,7 @@ TEST_F(GaProgram, ATimeLimitStopsEarlyAndTheStudyCanBeResumed) {
     child.wait();
   }
   EXPECT_EQ(run({"resume", "t.h5", "--time", "5 ms"}), 3) << output_;
-  EXPECT_NE(output_.find("stopped by time limit after"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("stopped by time limit, exit code 3, after"), std::string::npos) << output_;
   EXPECT_EQ(run({"resume", "t.h5", "--quiet"}), 0) << output_;
   EXPECT_EQ(first_difference(read("straight.h5"), read("t.h5")), "");
 }

@@ -58,7 +58,7 @@ std::string without_colours(const std::string& text) {
 
 TEST(CliTerminal, HeadingsAndResultsAreColoured) {
   const std::string text = on_terminal(kColouredCommand);
-  EXPECT_THAT(text, HasSubstr("\n\x1b[1mmargins (satisfied if >= 0)\x1b[0m\n"));
+  EXPECT_THAT(text, HasSubstr("\n\x1b[1mmargins in SI units (satisfied if >= 0)\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("  \x1b[32msatisfied\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("  \x1b[31mviolated\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("\x1b[31mno: beta_max is violated\x1b[0m\n"));
@@ -140,7 +140,7 @@ TEST(LineWrapping, CommandsNumbersAndJsonAreNotWrapped) {
 TEST(LineWrapping, AtTheWidthOfTheTerminal) {
   const std::vector<std::string> command = {"evaluate", "4ppa-2par"};
   const std::string text = without_colours(on_terminal(command, {}, ".", 80));
-  EXPECT_THAT(text, HasSubstr("the links of an\n                        upper connector add"));
+  EXPECT_THAT(text, HasSubstr("the links of an\n                           upper connector add"));
   EXPECT_EQ(without_colours(on_terminal(command, {}, ".", 300)), pkmopt(command).out);
   EXPECT_EQ(on_terminal(command, {{"NO_COLOR", "1"}}, ".", 80), text);
 }

@@ -19,9 +19,9 @@ TEST(CliUnits, InchesAndDegreesAreRead) {
 
 TEST(CliUnits, AnglesArePrintedInDegreesToo) {
   const std::vector<std::string> pose = {"pose", "4ppa-2par", "--at", "x=0.3,y=1.2,z=-1,theta=20deg"};
-  EXPECT_THAT(pkmopt(pose).out, HasSubstr("z = -1 m, theta = 0.349065850399 rad (20 deg)\n"));
+  EXPECT_THAT(pkmopt(pose).out, HasSubstr("z = -1000 mm, theta = 20 deg\n"));
   const auto forward = pkmopt({"forward", "4ppa-2par", "--joints", "q1=0.2131,q2=1.3869,q3=0.4154,q4=1.3846"});
-  EXPECT_THAT(forward.out, HasSubstr("  0.523598775598 rad (30 deg)  below,below\n"));
+  EXPECT_THAT(forward.out, HasSubstr("  30 deg  below,below\n"));
 }
 
 TEST(CliUnits, AnglesAboveOneRevolutionGiveANote) {
@@ -45,7 +45,7 @@ TEST(CliUnits, ListsContinueWithoutRepeatingTheOption) {
 TEST(CliUnits, AVolumeRatioIsNotPrintedInDegrees) {
   const auto ratio = pkmopt({"evaluate", "experiments/4ppa-2par/paper-problem.toml"}, PKM_EXPERIMENTS "/..");
   EXPECT_THAT(ratio.out, HasSubstr(" rad"));
-  EXPECT_THAT(ratio.out, Not(HasSubstr(" deg)")));
+  EXPECT_THAT(ratio.out, Not(HasSubstr("deg")));
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ VARIABLE_PARTS = [
 ]
 # Progress messages, which appear only in long runs or on a busy machine.
 PROGRESS = re.compile(r"(stage \d+ of \d+: )?\S+ generation \d+, \d+ evaluations, .* left|final step: .*"
+                      r"|this run: \d+ evaluations in .*"
                       r"|pkmopt: (measuring the time of an evaluation|evaluating .*|\S+ is computing, Ctrl-C ends it)")
 
 

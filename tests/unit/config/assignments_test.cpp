@@ -46,10 +46,11 @@ TEST(Assignments, MessagesNameOptionAndNearestName) {
   EXPECT_EQ(message({""}), "--set: found \"\"; expected name=value, with names out of a, b, tilt, mass");
   EXPECT_EQ(message({"a=1,a=2"}), "--set: found a twice; expected each name once");
   EXPECT_EQ(message({"a=1", "a=1"}), "--set: found a twice; expected each name once");
-  EXPECT_EQ(message({"a=1 kg"}),
-            "--set: found a=1 kg; expected a number in m, or text with a unit made of um, mm, cm, dm, m, km, in");
+  EXPECT_EQ(
+      message({"a=1 kg"}),
+      "--set: found a=1 kg; expected a number in m, or text with a unit made of um, mm, cm, dm, m, km, in, inch, ft");
   EXPECT_EQ(message({"a="}),
-            "--set: found a=; expected a number in m, or text with a unit made of um, mm, cm, dm, m, km, in");
+            "--set: found a=; expected a number in m, or text with a unit made of um, mm, cm, dm, m, km, in, inch, ft");
   EXPECT_EQ(message({"a=3"}), "--set: found a=3; expected a number in [0, 2] m");
 }
 

@@ -17,12 +17,12 @@ TEST(Describe, SpellsOutEveryDefault) {
   mechanism  slider: a machine for tests
 
 variables
-  a  0.1 .. 0.9 m    half width
+  a  100 .. 900 mm    half width
 
 fixed parameters
-  b     0.8 m                  (default)  distance
-  tilt  0.5 rad (28.6479 deg)  (default)  tilt
-  mass  2 kg                   (default)  mass
+  b     800 mm              (default)  distance
+  tilt   28.6478897565 deg  (default)  tilt
+  mass    2 kg              (default)  mass
 
 workspace
   method     columns                 (default)
@@ -30,8 +30,8 @@ workspace
   y          default of each design  (default)
 
 limits of a pose
-  gap_min    0 m                    (default: inactive)  least gap
-  angle_max  1.5 rad (85.9437 deg)  (default: inactive)  greatest angle
+  gap_min     0 mm              (default: inactive)  least gap
+  angle_max  85.9436692696 deg  (default: inactive)  greatest angle
 
 objectives
   volume: maximise, in m^2 rad
@@ -61,22 +61,22 @@ TEST(Describe, ShowsWhatWasGivenAndWhere) {
   mechanism  slider: a machine for tests
 
 variables
-  tilt  -0.5235987755982988 (-30 deg) .. 0.5 rad (28.6479 deg)  baseline 0.5 rad (28.6479 deg)       tilt
-  a      0.25 .. 0.72 m in steps of 0.1 m                       baseline 0.8 m (outside the bounds)  half width
+  tilt  -30 .. 28.6478897565 deg          baseline 28.6478897565 deg            tilt
+  a     250 .. 720 mm in steps of 100 mm  baseline 800 mm (outside the bounds)  half width
 
 fixed parameters
-  b     0.8 m   (default)  distance
-  mass  0.5 kg             mass
+  b     800 mm    (default)  distance
+  mass    0.5 kg             mass
 
 workspace
   method  voxels
-  cells   x = 32, z = 34, theta = 60                                                                     (default)
-  box     x = 0 .. 0.8 m, z = -1 .. 1 m, theta = -1.5707963267948966 (-90 deg) .. 1.5 rad (85.9437 deg)
-  y       0.2 m
+  cells   x = 32, z = 34, theta = 60                                               (default)
+  box     x = 0 .. 800 mm, z = -1000 .. 1000 mm, theta = -90 .. 85.9436692696 deg
+  y       200 mm
 
 limits of a pose
-  gap_min    2 a                              from constraint[1] gap (line 23)  least gap
-  angle_max  0.7853981633974483 rad (45 deg)  from workspace.limits (line 19)   greatest angle
+  gap_min     2 a    from constraint[1] gap (line 23)  least gap
+  angle_max  45 deg  from workspace.limits (line 19)   greatest angle
 
 objectives
   volume: minimise, in m^2 rad

@@ -90,7 +90,7 @@ TEST(ExpressionErrors, Constraints) {
        "such as \"5 %\""},
       {"expression = \"a\"\nunit = \"m\"\nmin = \"1 rad\"",
        "s.toml:13: constraint[1].min: found \"1 rad\"; expected a number in m, or text with a unit made of um, mm, cm, "
-       "dm, m, km, in"},
+       "dm, m, km, in, inch, ft"},
       {"expression = \"a\"\nunit = \"mm\"\nmin = 1",
        "s.toml:9: constraint[1]: the unit \"mm\" is not a product of SI units; "
        "expected one such as \"m^2 rad\", or \"1\""},

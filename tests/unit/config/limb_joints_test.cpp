@@ -140,6 +140,23 @@ TEST(Mobility, LegsInAPlaneHoldThePlatformIfTheirJointsAreParallel) {
             kDrives + "3 of 3 degrees of freedom at this pose");
 }
 
+TEST(Mobility, TheCauseOfASingularPoseIsNamed) {
+  const auto with = [](std::string text, const std::vector<std::pair<std::string, std::string>>& defaults) {
+    for (const auto& [name, value] : defaults)
+      text = rewritten(text, "\n" + name + " = \\{ default = \"[^\"]*\"",
+                       "\n" + name + " = { default = \"" + value + "\"");
+    return text;
+  };
+  const std::string meeting = with(test::text_of_mechanism("3-rpr"),
+                                   {{"B2x", "-100 mm"}, {"B2y", "-80 mm"}, {"B3x", "-100 mm"}, {"B3y", "-80 mm"}});
+  const std::string singular =
+      " of 3 degrees of freedom at this pose: the platform can move while the drives are "
+      "locked, or the pose is singular; ";
+  EXPECT_EQ(mobility_of(meeting), kDrives + "2" + singular + "it can move along a combination of x, y, phi");
+  EXPECT_EQ(mobility_of(with(meeting, {{"A2x", "0 m"}, {"A3x", "0 m"}, {"A3y", "0 m"}})),
+            kDrives + "1" + singular + "leg1, leg2, leg3 act along one line");
+}
+
 TEST(Mobility, WhatTheFileDoesNotDescribeIsUnknown) {
   const std::string unknown =
       "the drives determine the coordinates at this pose; unknown whether the joints constrain the platform's "

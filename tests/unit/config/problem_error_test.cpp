@@ -65,7 +65,7 @@ TEST(ProblemErrors, Workspace) {
            "s.toml:5: workspace.box.x: found [1]; expected a range [from, to]"},
           {"method = \"voxels\"\nbox = { x = [0, \"9 deg\"], z = [0, 1], theta = [0, 1] }",
            "s.toml:5: workspace.box.x[2]: found \"9 deg\"; expected a number in m, or text with a unit made of um, mm, "
-           "cm, dm, m, km, in"},
+           "cm, dm, m, km, in, inch, ft"},
           {"y = \"midle\"",
            "s.toml:4: workspace.y: found \"midle\"; expected \"middle\", \"integrated\" or a number in m; did you mean "
            "'middle'?"},
@@ -109,7 +109,8 @@ TEST(ProblemErrors, Objectives) {
           {"[[objective]]\ntype = \"volume\"\n[[objective]]\ntype = \"volume\"",
            "s.toml:7: objective[2]: the name 'volume' is already used; give this one another name with name = \"...\""},
           {"[[objective]]\ntype = \"volume\"\nname = \"a/b\"",
-           "s.toml:7: objective[1].name: found \"a/b\"; expected a name of letters, digits, '-', '_' and '.'"},
+           "s.toml:7: objective[1].name: found \"a/b\"; expected a name of letters, digits, blanks between them, '-', "
+           "'_' and '.'"},
           {"[[objective]]\ntype = \"shape\"\ncont = 3",
            "s.toml:7: objective[1].cont: found an unknown key; expected one of type, name, direction, region, robust, "
            "length, "
@@ -157,7 +158,7 @@ TEST(ProblemErrors, Constraints) {
           {"[[constraint]]\ntype = \"linear\"\ncoefficients = { a = 1 }\nbound = \"2 rad\"",
            "s.toml:10: constraint[1].bound: found \"2 rad\"; expected a number in m, or text with a unit made of um, "
            "mm, "
-           "cm, dm, m, km, in"},
+           "cm, dm, m, km, in, inch, ft"},
           {"[[constraint]]\ntype = \"reach\"\n[[constraint]]\ntype = \"reach\"",
            "s.toml:9: constraint[2]: the name 'reach' is already used; give this one another name with name = \"...\""},
           {"[[constraint]]\ntype = \"volume\"",
@@ -168,7 +169,7 @@ TEST(ProblemErrors, Constraints) {
           {"[[constraint]]\ntype = \"volume\"\nmin = \"1 m^3\"",
            "s.toml:9: constraint[1].min: found \"1 m^3\"; expected a number in m^2 rad, or text with a unit made of "
            "um, "
-           "mm, cm, dm, m, km, in, mrad, rad, deg, °"},
+           "mm, cm, dm, m, km, in, inch, ft, mrad, rad, deg, °"},
           {"[[constraint]]\ntype = \"force\"\nmax = 1",
            "s.toml:8: constraint[1].type: force needs bodies, which the mechanism slider does not describe"},
           {"[[constraint]]\ntype = \"gap\"\nangle_max = 0",
@@ -222,7 +223,7 @@ TEST(ProblemErrors, Stages) {
           {(kVolume + "[[stage]]\noptimiser = \"ga\"\ntarget = \"2 m\""),
            "s.toml:9: stage[1].target: found \"2 m\"; expected a number in m^2 rad, or text with a unit made of um, "
            "mm, "
-           "cm, dm, m, km, in, mrad, rad, deg, °"},
+           "cm, dm, m, km, in, inch, ft, mrad, rad, deg, °"},
           {(kVolume + "[[stage]]\noptimiser = \"broken\""),
            "s.toml:7: stage[1]: elite must be smaller than population"},
           {(two + "[[stage]]\noptimiser = \"ga\""),
@@ -254,7 +255,7 @@ TEST(ProblemErrors, References) {
        {"[[reference]]\nname = \"p\"\nvalues = { volume = \"1 m\" }",
         "s.toml:9: reference[1].values.volume: found \"1 m\"; expected a number in m^2 rad, or text with a unit made "
         "of "
-        "um, mm, cm, dm, m, km, in, mrad, rad, deg, °"},
+        "um, mm, cm, dm, m, km, in, inch, ft, mrad, rad, deg, °"},
        {"[[reference]]\nname = \"p\"\ndesign = { b = 1 }",
         "s.toml:9: reference[1].design.b: found an unknown variable; expected one of a; did you mean 'a'?"},
        {"[[reference]]\nname = \"p\"\nseconds = -1",

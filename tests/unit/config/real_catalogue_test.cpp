@@ -38,7 +38,7 @@ TEST(RealCatalogue, LinearBoundIsInTheUnitOfItsParameters) {
   EXPECT_EQ(study.problem->margins()[0].unit, "m");
   EXPECT_EQ(complaint_of(kLinear + "coefficients = { a = 1 }\nbound = \"1 rad\"\n"),
             "s.toml:13: constraint[1].bound: found \"1 rad\"; expected a number in m, or text with a unit made of um, "
-            "mm, cm, dm, m, km, in");
+            "mm, cm, dm, m, km, in, inch, ft");
 }
 
 TEST(RealCatalogue, LinearNamesParameters) {
@@ -89,7 +89,7 @@ TEST(RealCatalogue, TheHeldCoordinateIsTheOneThatIsGiven) {
   EXPECT_THAT(plan("nodes = { y = 6, x = 4 }").columns()->nodes, ElementsAre(4, 6));
   EXPECT_EQ(read_quadrupteron("x = 0.2").problem->objectives()[0].unit, "m^2 rad");
   EXPECT_EQ(read_quadrupteron("phi = 0").problem->objectives()[0].unit, "m^3");
-  EXPECT_THAT(describe(read_quadrupteron("x = 0.2")), HasSubstr("  x          0.2 m\n"));
+  EXPECT_THAT(describe(read_quadrupteron("x = 0.2")), HasSubstr("  x          200 mm\n"));
 }
 
 TEST(RealCatalogue, TheSweptCoordinatesMayBeNamed) {
@@ -147,8 +147,8 @@ TEST(RealCatalogue, ClearanceIsSpelledOut) {
   const Study study = read_more(kClearance);
   EXPECT_EQ(study.constraints[0].role, "restricts the workspace by clearance_min");
   EXPECT_EQ(study.constraints[0].options.number("min"), 0);
-  EXPECT_THAT(describe(study), ::testing::ContainsRegex("clearance_min  0 m +from constraint.1. clearance .line 10."));
-  EXPECT_THAT(describe(read_more("")), HasSubstr("clearance_min  -2 m"));
+  EXPECT_THAT(describe(study), ::testing::ContainsRegex("clearance_min +0 mm +from constraint.1. clearance .line 10."));
+  EXPECT_THAT(describe(read_more("")), HasSubstr("clearance_min  -2000 mm"));
   EXPECT_EQ(complaint_of(kClearance + "min = \"-1 mm\"\n"), "accepted") << "in the range of clearance_min";
   EXPECT_EQ(complaint_of(kClearance + "min = \"-3 m\"\n"),
             "s.toml:12: constraint[1].min: found \"-3 m\"; expected a number in [-2, 100] m");

@@ -155,17 +155,17 @@ TEST(StudyErrors, MechanismAndParameters) {
            "s.toml:3: mechanism.parameters.tilt: found \"90 deg\"; expected a number in [-1, 1] rad"},
           {"parameters = { a = true }",
            "s.toml:3: mechanism.parameters.a: found true; expected a number in m, or text with a unit made of um, mm, "
-           "cm, dm, m, km, in"},
+           "cm, dm, m, km, in, inch, ft"},
           {"parameters = { a = inf }",
            "s.toml:3: mechanism.parameters.a: found inf; expected a number in m, or text with a unit made of um, mm, "
-           "cm, dm, m, km, in"},
+           "cm, dm, m, km, in, inch, ft"},
           {"parameters = { a = 1979-05-27 }",
            "s.toml:3: mechanism.parameters.a: found 1979-05-27; expected a number in m, or text with a unit made of "
            "um, "
-           "mm, cm, dm, m, km, in"},
+           "mm, cm, dm, m, km, in, inch, ft"},
           {"parameters = { a = [1,\n 2] }",
            "s.toml:3: mechanism.parameters.a: found an array; expected a number in m, or text with a unit made of um, "
-           "mm, cm, dm, m, km, in"},
+           "mm, cm, dm, m, km, in, inch, ft"},
           {"parameters = [1]", "s.toml:3: mechanism.parameters: found [1]; expected a table { parameter = .. }"},
           {"parameters = { a = 0 }", "s.toml:1: mechanism: the half width a must be > 0"},
       });

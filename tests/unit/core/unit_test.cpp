@@ -28,6 +28,8 @@ TEST(Unit, ConvertsExactlyToSi) {
       {"7 um", "m", 7e-6},
       {"2 km", "m", 2000},
       {"1 in", "m", 0.0254},
+      {"3 inch", "m", 0.0762},
+      {"10 ft", "m", 3.048},
       {"30deg", "rad", kPi / 6},
       {"-90 deg", "rad", -kPi / 2},
       {"30°", "rad", kPi / 6},
@@ -72,7 +74,7 @@ TEST(Unit, RejectsInvalidTextAndOtherDimensions) {
 }
 
 TEST(Unit, MessagesListTheUnitsOfTheDimension) {
-  EXPECT_EQ(quantity_hint("m"), "a number in m, or text with a unit made of um, mm, cm, dm, m, km, in");
+  EXPECT_EQ(quantity_hint("m"), "a number in m, or text with a unit made of um, mm, cm, dm, m, km, in, inch, ft");
   EXPECT_EQ(quantity_hint("rad"), "a number in rad, or text with a unit made of mrad, rad, deg, °");
   EXPECT_EQ(quantity_hint("1"), "a number, or text such as \"5 %\"");
   EXPECT_EQ(quantity_hint("rad/s"),
