@@ -6,17 +6,22 @@
 
 #include "engine/core/instruction_set.hpp"
 #include "experiments/app/declared_commands.hpp"
+#include "experiments/app/target.hpp"
 
 namespace pkm {
 namespace {
 
-/// What an option or an argument accepts: words, files, or both.
+/// What an option or an argument accepts: words, files, or both, or names of the robot on the command line.
 struct PossibleValues {
   std::vector<std::string> words;
-  std::string extension;  ///< extension of the files, for example "h5"; "*": files with any name; "": no files
+  std::string extension;   ///< extension of the files, for example "h5"; "*": any file; "": no files
+  std::string names = {};  ///< option of `completion` that prints the names; "": none
 };
 
-PossibleValues values_of(const std::string& command, const std::string& type, const Session& session) {
+PossibleValues values_of(const std::string& command, const DeclaredOption& option, const Session& session) {
+  const std::string& type = option.type;
+  if (option.name == "--set") return {{}, "", "--parameters"};
+  if (option.name == "--limit") return {{}, "", "--limits"};
   if (type == "KIND" && command == "new") return {{"mechanism", "study"}, ""};
   if (type == "KIND") return {{"mechanisms", "objectives", "constraints", "optimisers"}, ""};
   if (type == "FORMAT") return {{"study", "mechanism", "motion", "motors"}, ""};
@@ -52,6 +57,7 @@ void print_bash(const std::vector<DeclaredCommand>& commands, const Session& ses
   const std::string& name = session.program;
   const auto offer = [&](const PossibleValues& values) {
     std::string line;
+    if (!values.names.empty()) line = "_" + name + "_names " + values.names;
     if (!values.words.empty())
       line += "COMPREPLY=($(compgen -W " + in_quotes(join_words(values.words)) + " -- \"$word\"))";
     if (!values.extension.empty()) {
@@ -70,7 +76,17 @@ void print_bash(const std::vector<DeclaredCommand>& commands, const Session& ses
   local found
   while IFS= read -r found; do COMPREPLY+=("$found"); done < <(compgen -f -X "$pattern" -- "$word"; compgen -d -- "$word")
 }
-_)" << name << R"(() {
+_)" << name << R"shell(_names() {  # names of the robot on the command line, printed by an option of 'completion'
+  local robot found
+  for robot in "${COMP_WORDS[@]:2:COMP_CWORD-2}"; do
+    [[ $robot == -* ]] && continue
+    found=$("${COMP_WORDS[0]}" completion "$1" "$robot" 2> /dev/null) && break
+  done
+  compopt -o nospace
+  COMPREPLY=($(compgen -W "$found" -- "$word"))
+}
+_)shell" << name
+            << R"(() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]}
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
@@ -84,7 +100,7 @@ _)" << name << R"(() {
     std::map<std::string, std::string> options;  // for each command, its options that accept these values
     for (const DeclaredOption& option : command.options)
       if (!option.type.empty()) {
-        std::string& all = options[offer(values_of(command.name, option.type, session))];
+        std::string& all = options[offer(values_of(command.name, option, session))];
         for (const std::string& spelling : {option.name, option.short_name})
           if (!spelling.empty()) all += (all.empty() ? "" : "|") + in_quotes(command.name + " " + spelling);
       }
@@ -98,15 +114,16 @@ _)" << name << R"(() {
     std::cout << "  " << command.name << ")\n    if [[ $word == -* ]]; then COMPREPLY=($(compgen -W "
               << in_quotes(join_words(options)) << " -- \"$word\"))\n    else ";
     std::cout << offer(command.arguments.empty() ? PossibleValues{}
-                                                 : values_of(command.name, command.arguments.front().type, session))
+                                                 : values_of(command.name, command.arguments.front(), session))
               << "\n    fi ;;\n";
   }
   std::cout << "  esac\n}\ncomplete -F _" << name << ' ' << name << '\n';
 }
 
 void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& session) {
-  const auto action = [&](const std::string& command, const std::string& type) {
-    const PossibleValues values = values_of(command, type, session);
+  const auto action = [&](const std::string& command, const DeclaredOption& option) {
+    const PossibleValues values = values_of(command, option, session);
+    if (!values.names.empty()) return "{_" + session.program + "_names " + values.names + "}";
     std::string files;
     if (values.extension == "*") files = "_files";
     if (!values.extension.empty() && files.empty()) files = "_files -g \"*." + values.extension + "\"";
@@ -115,7 +132,18 @@ void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& sess
     return "{compadd " + join_words(values.words) + "; " + files + "}";
   };
   std::cout << "#compdef " << session.program << "\n# Completion for zsh, printed by '" << session.program
-            << " completion zsh'.\nlocal -a commands=(\n";
+            << " completion zsh'.\n_" << session.program << R"shell(_names() {  # names of the robot on the command line
+  local robot
+  local -a found
+  for robot in ${words[2,CURRENT-1]}; do
+    [[ $robot == -* ]] && continue
+    found=(${(f)"$()shell"
+            << session.program << R"shell( completion $1 $robot 2> /dev/null)"}) && (( $#found )) && break
+  done
+  compadd -S '' -- $found
+}
+local -a commands=(
+)shell";
   for (const DeclaredCommand& command : commands)
     std::cout << "  " << in_quotes(command.name + ":" + command.meaning) << '\n';
   std::cout << ")\nif (( CURRENT == 2 )); then _describe command commands; return; fi\nshift words; (( CURRENT-- ))\n"
@@ -129,18 +157,18 @@ void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& sess
                     << in_quotes("*" + name + "[" + zsh_escaped(option.meaning) + "]" +
                                  (option.type.empty()
                                       ? ""
-                                      : ":" + zsh_escaped(option.type) + ":" + action(command.name, option.type)));
+                                      : ":" + zsh_escaped(option.type) + ":" + action(command.name, option)));
     for (const DeclaredOption& argument : command.arguments)
-      std::cout << " \\\n    "
-                << in_quotes("*:" + zsh_escaped(argument.type) + ":" + action(command.name, argument.type));
+      std::cout << " \\\n    " << in_quotes("*:" + zsh_escaped(argument.type) + ":" + action(command.name, argument));
     std::cout << " ;;\n";
   }
   std::cout << "esac\n";
 }
 
 void print_fish(const std::vector<DeclaredCommand>& commands, const Session& session) {
-  const auto offer = [&](const std::string& command, const std::string& type) {
-    const PossibleValues values = values_of(command, type, session);
+  const auto offer = [&](const std::string& command, const DeclaredOption& option) {
+    const PossibleValues values = values_of(command, option, session);
+    if (!values.names.empty()) return " -a '(__" + session.program + "_names " + values.names + ")'";
     std::string words = join_words(values.words);
     if (!values.extension.empty() && values.extension != "*") {
       if (!words.empty()) words += ' ';
@@ -149,24 +177,39 @@ void print_fish(const std::vector<DeclaredCommand>& commands, const Session& ses
     return words.empty() ? std::string() : " -a " + in_quotes(words);
   };
   const std::string begin = "complete -c " + session.program;
-  std::cout << "# Completion for fish, printed by '" << session.program << " completion fish'.\n" << begin << " -f\n";
+  std::cout << "# Completion for fish, printed by '" << session.program << " completion fish'.\n"
+            << "function __" << session.program << R"(_names  # names of the robot on the command line
+  for robot in (commandline -opc)[3..-1]
+    string match -q -- '-*' $robot; and continue
+    )" << session.program
+            << R"( completion $argv[1] $robot 2> /dev/null; and return
+  end
+end
+)" << begin << " -f\n";
   for (const DeclaredCommand& command : commands) {
     std::cout << begin << " -n __fish_use_subcommand -a " << command.name << " -d " << in_quotes(command.meaning)
               << '\n';
     const std::string here = begin + " -n '__fish_seen_subcommand_from " + command.name + "'";
     for (const DeclaredOption& option : command.options) {
-      const bool any_file = values_of(command.name, option.type, session).extension == "*";
+      const bool any_file = values_of(command.name, option, session).extension == "*";
       std::cout << here << " -l " << option.name.substr(2)
                 << (option.short_name.empty() ? "" : " -s " + option.short_name.substr(1))
                 << (option.type.empty() ? ""
                     : any_file          ? " -r -F"
                                         : " -r -f")
-                << offer(command.name, option.type) << " -d " << in_quotes(option.meaning) << '\n';
+                << offer(command.name, option) << " -d " << in_quotes(option.meaning) << '\n';
     }
     for (const DeclaredOption& argument : command.arguments)
-      if (const std::string words = offer(command.name, argument.type); !words.empty())
-        std::cout << here << words << '\n';
+      if (const std::string words = offer(command.name, argument); !words.empty()) std::cout << here << words << '\n';
   }
+}
+
+/// Prints the names that --set or --limit accept for a robot, one per line, each with the sign that follows it.
+void print_names(const Session& session, const std::string& robot, bool limits) {
+  DesignArguments arguments;
+  (robot.ends_with(".h5") ? arguments.from : arguments.target) = robot;
+  const MechanismInfo& info = find_target(session, arguments).info();
+  for (const std::string& name : limits ? names_of(info.limits) : names_of(info.parameters)) std::cout << name << "=\n";
 }
 
 using Print = void (*)(const std::vector<DeclaredCommand>&, const Session&);
@@ -183,19 +226,27 @@ std::vector<std::string> shells() {
 
 void add_completion(CLI::App& app, Session& session) {
   struct CompletionArguments {
-    std::string shell;
+    std::string shell, parameters, limits;
   };
   auto [command, a] = add_command<CompletionArguments>(
       app, "completion", "Print a script for command-line completion in bash, zsh or fish.",
       "Example: source <(pkmopt completion bash)\nThe Debian package installs it for all three shells.",
       [&session](const CompletionArguments& arguments) {
+        for (const bool limits : {false, true})
+          if (const std::string& robot = limits ? arguments.limits : arguments.parameters; !robot.empty()) {
+            print_names(session, robot, limits);
+            return;
+          }
         const auto found = std::ranges::find(kShells, arguments.shell, &std::pair<std::string, Print>::first);
         if (found == kShells.end())
           throw ConfigError({"", 0, "completion"}, "the unknown shell '" + arguments.shell + "'",
                             "one of " + join(shells()), nearest_name(arguments.shell, shells()));
         found->second(declared_commands(session), session);
       });
-  add_option(command, "SHELL", a.shell, "bash, zsh or fish")->required();
+  add_option(command, "SHELL", a.shell, "bash, zsh or fish");
+  const std::string of = " of a mechanism, a study or a study file accepts, for the shell";
+  add_option(command, "--parameters ROBOT", a.parameters, "Print the names that --set" + of);
+  add_option(command, "--limits ROBOT", a.limits, "Print the names that --limit" + of);
 }
 
 }  // namespace pkm

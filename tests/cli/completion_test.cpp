@@ -56,6 +56,18 @@ TEST(Completion, BashOffersCommandsOptionsNamesAndFiles) {
   EXPECT_THAT(offered({"pkmopt", "new", ""}, here), UnorderedElementsAre("mechanism", "study"));
 }
 
+TEST(Completion, BashOffersNamesOfParametersAndLimits) {
+  const testing::StudyFolder folder;
+  folder.write("s.toml", testing::study_with(""));
+  for (const std::string robot : {"4ppa-2par", "s.toml"}) {
+    EXPECT_THAT(offered({PKM_PROGRAM, "evaluate", robot, "--set", "l_"}, folder.path()),
+                UnorderedElementsAre("l_u=", "l_d="));
+    EXPECT_THAT(offered({PKM_PROGRAM, "pose", robot, "--limit", "beta"}, folder.path()),
+                UnorderedElementsAre("beta_min=", "beta_max="));
+  }
+  EXPECT_THAT(offered({PKM_PROGRAM, "evaluate", "none.toml", "--set", ""}, folder.path()), ElementsAre(""));
+}
+
 TEST(Completion, ZshAndFishScriptsHaveEveryOption) {
   for (const std::string shell : {"zsh", "fish"}) {
     const auto result = run_program({PKM_PROGRAM, "completion", shell});
