@@ -111,7 +111,7 @@ time = 0.2
 points = [{ x = 0, y = 0.4, z = -0.45 }, { x = 0.02 }]
 )";
   ASSERT_EQ(run({"new", "study", kRobots + "five-bar.toml", "-o", "bar.toml"}), 0) << output_;
-  ASSERT_EQ(run({"run", "bar.toml", "-o", "bar.h5", "--cells", "8", "--quiet"}), 0) << output_;
+  ASSERT_EQ(run({"run", "bar.toml", "-o", "bar.h5", "--quiet"}), 0) << output_;
   const json robots =
       compared({kRobots + "five-bar.toml", "bar.toml", "bar.h5", kRobots + "rotary-delta.toml"}, "flat.toml");
   EXPECT_GT(robots[0]["values"]["plate: margin"]["value"], 0);

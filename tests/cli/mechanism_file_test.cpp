@@ -39,9 +39,9 @@ class MechanismFile : public ::testing::Test {
     ASSERT_EQ(run({"new", "mechanism", "my-delta", "-o", "delta.toml"}).err, "");
     const auto study = run({"new", "study", "delta.toml"});
     ASSERT_EQ(study.err, "");
-    std::string text = study.out + "population = 6\n";
-    for (const auto& [from, to] : {std::pair<std::string, std::string>{"generations = 50", "generations = 2"},
-                                   {"x = 24, y = 24, z = 24", "x = 6, y = 6, z = 6"}})
+    std::string text = study.out.substr(0, study.out.find("\n[[stage]]    # a gradient solver")) + "population = 6\n";
+    for (const auto& [from, to] : {std::pair<std::string, std::string>{"generations = 20", "generations = 2"},
+                                   {"method = \"columns\"", "method = \"voxels\"\ncells = { x = 6, y = 6, z = 6 }"}})
       text.replace(text.find(from), from.size(), to);
     folder_.write("study.toml", text);
   }
@@ -63,12 +63,54 @@ TEST_F(MechanismFile, NewFilesAreShortAndValid) {
     const auto written = run({"new", "study", mechanism, "--output", "new.toml", "--force"});
     EXPECT_EQ(written.err, "");
     EXPECT_EQ(written.out, "wrote new.toml\nnext: pkmopt run new.toml\n");
-    EXPECT_LE(lines_without_comments(text_of(path("new.toml"))), 15);
+    EXPECT_LE(lines_without_comments(text_of(path("new.toml"))), 26);
     const auto checked = run({"check", "new.toml", "--json"});
     EXPECT_EQ(checked.exit_code, 0) << checked.err;
     EXPECT_EQ(checked.json()["warnings"].size(), 0u);
     EXPECT_GT(checked.json()["probe"]["feasible"], 0);
   }
+}
+
+/// A study with its examples of constraints in use.
+std::string with_examples(const std::string& text) {
+  const auto begin = text.find("# Examples of constraints");
+  if (begin == std::string::npos) return text;
+  std::istringstream lines(text.substr(text.find('\n', begin)));
+  std::string used = text.substr(0, begin);
+  for (std::string line; std::getline(lines, line);) used += (line.starts_with("# ") ? line.substr(2) : line) + '\n';
+  return used;
+}
+
+TEST_F(MechanismFile, ANewStudyHasExamplesOfConstraintsThatAreValidTogether) {
+  const std::string robots = PKM_EXPERIMENTS "/mechanisms/";
+  const struct {
+    std::string mechanism, method;
+    std::vector<std::string> constraints;
+  } cases[] = {
+      {"delta.toml", "columns", {"rods longer than cranks", "task-workspace", "motion", "linear", "expression"}},
+      {"4ppa-2par", "columns", {"interference", "singularity-margin", "rail-length", "workspace-shape"}},
+      {robots + "five-bar.toml", "columns", {"task-workspace", "motion", "linear"}},
+      {robots + "frames/3-prs.toml", "voxels", {"task-workspace", "motion"}}};
+  for (const auto& [mechanism, method, constraints] : cases) {
+    SCOPED_TRACE(mechanism);
+    ASSERT_EQ(run({"new", "study", mechanism, "-o", "new.toml", "--force"}).err, "");
+    const std::string text = text_of(path("new.toml"));
+    EXPECT_THAT(text, HasSubstr("\nmethod = \"" + method + "\"\n"));
+    EXPECT_THAT(text, HasSubstr("\n[baseline]"));
+    folder_.write("used.toml", with_examples(text));
+    const auto checked = run({"check", "used.toml", "--json"});
+    ASSERT_NE(checked.exit_code, 2) << checked.err;
+    std::vector<std::string> types;
+    const auto study = checked.json();
+    for (const auto& constraint : study["constraints"]) types.push_back(constraint["type"]);
+    for (const std::string& constraint : constraints) EXPECT_THAT(types, ::testing::Contains(constraint));
+  }
+  ASSERT_EQ(run({"new", "study", robots + "five-bar.toml", "-o", "new.toml", "--force"}).err, "");
+  const auto found = run({"run", "new.toml", "--json", "-q"});
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_EQ(found.json()["stages"].size(), 2u);
+  EXPECT_GT(found.json()["best"]["objectives"]["workspace-ratio"],
+            found.json()["baseline"]["objectives"]["workspace-ratio"]);
 }
 
 TEST_F(MechanismFile, AStudyRefersToItRelativeToItsOwnFolder) {
