@@ -94,7 +94,7 @@ pkmopt: maintscript-calls-ldconfig
   file(CONFIGURE OUTPUT debian/triggers CONTENT "activate-noawait ldconfig\n")
   set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/debian/triggers)
   set(CPACK_GENERATOR DEB)
-else()
+else()  # experiments/package.sh packs the installed files, so that the archive is reproducible
   set(CPACK_GENERATOR TGZ)
   set(beside ${CMAKE_INSTALL_LIBDIR}/pkmopt)
   set_target_properties(${programs} PROPERTIES INSTALL_RPATH $ORIGIN/../${beside})

@@ -47,7 +47,7 @@ typedef enum pkmopt_status {
   PKMOPT_INTERNAL_ERROR = 6 /* a bug of pkmopt */
 } pkmopt_status;
 
-/* Returns the version of the library as text, for example "0.1.0". */
+/* Version of the library as text: "0.2.0". */
 PKMOPT_API const char* pkmopt_version(void);
 /* Returns the last error of the calling thread as one sentence; "" if no error occurred. The text is valid until the
  * next call on this thread. */

@@ -39,6 +39,7 @@ def main():
         "Requires-Python: >=3.11\nRequires-Dist: numpy>=1.24\n" % version,
         info + "/WHEEL": "Wheel-Version: 1.0\nGenerator: make_wheel.py\nRoot-Is-Purelib: false\nTag: py3-none-%s\n" % PLATFORM,
     }
+    files[info + "/sboms/pkmopt.cdx.json"] = tree / "share/doc/pkmopt/pkmopt.cdx.json"
     for licence in sorted(tree.glob("share/doc/pkmopt/licences/*")) + [tree / "share/doc/pkmopt/LICENSE"]:
         files["%s/licences/%s" % (info, licence.name)] = licence
 
