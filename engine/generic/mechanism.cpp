@@ -9,6 +9,7 @@
 #include "engine/generic/column_evaluator.hpp"
 #include "engine/generic/column_volume.hpp"
 #include "engine/generic/design_checks.hpp"
+#include "engine/generic/design_facts.hpp"
 #include "engine/generic/dynamics.hpp"
 #include "engine/generic/elastostatics.hpp"
 #include "engine/generic/equations.hpp"
@@ -33,6 +34,7 @@ namespace {
 /// A mechanism from a file. Offers those capabilities that the file has data for: links, masses, joints, columns.
 class GenericMechanism final : public Mechanism,
                                public TotalMass,
+                               public DesignFacts,
                                public OrderedMargins,
                                public LimitedDrives,
                                public std::enable_shared_from_this<GenericMechanism>,
@@ -152,6 +154,16 @@ class GenericMechanism final : public Mechanism,
   }
   double total_mass(std::span<const double> parameters) const override { return generic::total_mass(e_, parameters); }
   Dual4 total_mass(std::span<const Dual4> parameters) const override { return generic::total_mass(e_, parameters); }
+  std::vector<std::optional<std::array<double, 2>>> joint_ranges(std::span<const double> parameters) const override {
+    return generic::joint_ranges(e_, parameters);
+  }
+  std::vector<std::pair<std::string, double>> body_masses(std::span<const double> parameters) const override {
+    return generic::body_masses(e_, parameters);
+  }
+  std::function<std::vector<PlacedDrive>(const Pose<double>&)> drives(std::span<const double> parameters,
+                                                                      const std::string& mode) const override {
+    return DrivePlaces(e_, parameters, mode_index(info(), mode));
+  }
   DriveLimits drive_limits(std::span<const double> parameters) const override {
     return generic::drive_limits(e_, parameters);
   }

@@ -5,6 +5,8 @@
 #include <span>
 
 #include "engine/core/team.hpp"
+#include "engine/mechanism/design_facts.hpp"
+#include "engine/report/base_and_motors.hpp"
 #include "engine/report/dimensions.hpp"
 #include "engine/report/packed_array.hpp"
 #include "engine/report/panels.hpp"
@@ -77,19 +79,26 @@ void add_motion_poses(const Motion& motion, std::vector<Pose<double>>& poses) {
     poses.push_back(motion.at(motion.duration() * static_cast<double>(k) / (kMotionPoses - 1)).pose);
 }
 
-/// Places the links and inspects the limits at each pose, in parallel.
+/// Places the links, motors and base and inspects the limits at each pose, in parallel.
 std::vector<DrawnPose> draw(const ShownDesigns& shown, const ShownDesign& design,
                             const std::vector<Pose<double>>& poses) {
   std::vector<DrawnPose> drawn(poses.size());
   const std::vector<PlacedLink> obstacles = drawn_obstacles(shown.limits.obstacles);
+  const DrawnMotors motors(shown.mechanism, design.parameters, shown.mode);
   parallel_for(poses.size(), [&](std::size_t pose, std::size_t end) {
     for (; pose < end; ++pose) {
       drawn[pose].report = shown.mechanism.inspect(design.parameters, poses[pose], shown.mode, shown.limits);
       std::vector<PlacedLink>& links = drawn[pose].links;
       links = shown.mechanism.links()->place(design.parameters, poses[pose], shown.mode);
-      if (!links.empty()) links.insert(links.end(), obstacles.begin(), obstacles.end());
+      if (links.empty()) continue;
+      motors.append(poses[pose], links);
+      links.insert(links.end(), obstacles.begin(), obstacles.end());
     }
   });
+  std::vector<std::vector<PlacedLink>*> assembled;
+  for (DrawnPose& pose : drawn)
+    if (!pose.links.empty()) assembled.push_back(&pose.links);
+  append_base(assembled);
   return drawn;
 }
 
@@ -230,6 +239,10 @@ Json drawn_mechanism(const ShownDesigns& shown, const ShownDesign& design) {
                                   {"from", end(d.from)},
                                   {"to", end(d.to)}});
   }
+  const DesignFacts* const facts = find_design_facts(shown.mechanism);
+  if (facts && (shown.coupling || !shown.motions.empty()))  // the loads along motions depend on the masses
+    for (const auto& [name, mass] : facts->body_masses(design.parameters))
+      json["masses"].push_back({{"name", name}, {"mass", mass}});
   json["end_count"] = ends.count;
   json["assembles"] = packed_bits(assembles);
   json["reasons"] = reasons;

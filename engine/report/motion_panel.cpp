@@ -1,7 +1,10 @@
 // Computes the data of the panel "Motions": joints, forces and power of each design along the motions of the study.
 #include <algorithm>
+#include <limits>
 
+#include "engine/mechanism/motor_demand.hpp"
 #include "engine/mechanism/trajectory.hpp"
+#include "engine/mechanism/with_drive_trains.hpp"
 #include "engine/report/packed_array.hpp"
 #include "engine/report/panels.hpp"
 
@@ -77,6 +80,34 @@ Json motion_summary(const TrajectorySummary& s, bool has_drive_trains) {
   return json;
 }
 
+/// Whether the drives can perform a motion: the smallest ratio of a rating to its demand, the rating and the joint that
+/// have it, and the motor of this joint. Null if the study gives no ratings, or a sample has no forces.
+Json drive_check(const Mechanism& mechanism, const Trajectory& trajectory) {
+  const std::vector<JointLimits> limits = joint_limits(mechanism);
+  const TrajectorySummary& s = trajectory.summary;
+  if (limits.empty() || !s.has_forces) return Json();
+  Json worst;
+  double least = std::numeric_limits<double>::infinity();
+  const auto& joints = mechanism.info().joints;
+  const DriveTrains* const trains = mechanism.drive_trains();
+  const auto loads = trains ? joint_loads(*trains, trajectory) : std::vector<std::vector<JointLoad>>();
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const auto compare = [&](double reserve, const std::string& rating) {
+      if (!(reserve < least)) return;
+      least = reserve;
+      worst = {{"reserve", reserve}, {"rating", rating}, {"joint", joints[i].name}};
+      if (limits[i].motor) worst["motor"] = limits[i].motor->name;
+    };
+    compare(limits[i].force / s.peak_force[i], joints[i].turns() ? "joint torque" : "joint force");
+    if (s.peak_speed) compare(limits[i].speed / (*s.peak_speed)[i], "joint speed");
+    if (limits[i].motor && trains) {
+      const MotorFit motor = fit(*limits[i].motor, (*trains)[i], loads[i]);
+      compare(motor.reserve, motor.bounded_by);
+    }
+  }
+  return worst;
+}
+
 Json design_along(const ShownDesigns& shown, const ShownDesign& design, const Motion& motion) {
   const Trajectory found =
       compute_trajectory(shown.mechanism, design.parameters, shown.mode, shown.limits, motion, kSamples);
@@ -98,7 +129,8 @@ Json design_along(const ShownDesigns& shown, const ShownDesign& design, const Mo
       {"quantities", quantity_columns(found, plotted_quantities(info))},
       {"conditioning", packed_floats(conditioning)},
       {"reasons", reasons},
-      {"summary", motion_summary(found.summary, shown.mechanism.drive_trains() != nullptr)}};
+      {"summary", motion_summary(found.summary, shown.mechanism.drive_trains() != nullptr)},
+      {"drives", drive_check(shown.mechanism, found)}};
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ Json front_data(const PageStudy& page);
 
 /// The parameters of a single design, for a page without a study.
 Json design_data(const ShownDesigns& shown);
-/// The feasible cells of each design with their fields, and the boundary surface with the fields at its vertices.
+/// The feasible cells of each design with their fields, the boundary surface, the largest solids, and the joints with
+/// their ranges.
 Json workspace_data(const ShownDesigns& shown);
 /// The feasible cells and the boundary surface of the best design, without fields, from the voxel map in the study
 /// file.

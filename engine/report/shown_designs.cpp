@@ -150,6 +150,29 @@ std::vector<ShownSolid> largest_solids(const ProblemParts& parts, const Workspac
   return solids;
 }
 
+/// Finds the largest box and the largest cylinder of any proportions in a workspace over three lengths (the largest
+/// rectangle over two); none over other coordinates.
+std::vector<ShownSolid> workspace_sizes(const ShownDesigns& shown, const ShownDesign& design) {
+  std::vector<ShownSolid> sizes;
+  if (!design.workspace) return sizes;
+  const std::vector<WorkspaceAxis>& axes = design.workspace->axes;
+  if (axes.size() < 2 || std::ranges::any_of(axes, [](const WorkspaceAxis& axis) { return axis.unit != "m"; }))
+    return sizes;
+  for (const SolidKind kind : {SolidKind::cylinder, SolidKind::box}) {
+    if (kind == SolidKind::cylinder && axes.size() < 3) continue;
+    const Options options = default_options(largest_solid_options(kind));
+    try {
+      const SolidSpec spec = solid_spec(kind, shown.mechanism.info(), shown.plan, options);
+      const LargestSolidFinder finder(shown.mechanism, shown.plan, spec, options.flag("regular"));
+      const LargestSolid found = finder.find(design.parameters);
+      if (found.volume > 0)
+        sizes.push_back({spec.shape.name(), spec.shape, found.solid, finder.dimension_names(), found.volume});
+    } catch (const std::invalid_argument&) {  // this plan or this design supports no solids: the page omits them
+    }
+  }
+  return sizes;
+}
+
 }  // namespace
 
 ShownDesigns evaluate_shown_designs(const PageStudy& page) {
@@ -161,6 +184,7 @@ ShownDesigns evaluate_shown_designs(const PageStudy& page) {
   for (ShownDesign& design : shown.designs)
     if (design.workspace)
       design.solids = largest_solids(page.study->problem->of(design.parameters).parts(), shown.plan, design.parameters);
+  if (!shown.designs.empty()) shown.designs.front().sizes = workspace_sizes(shown, shown.designs.front());
   return shown;
 }
 
@@ -186,6 +210,7 @@ ShownDesigns evaluate_shown_designs(const Mechanism& mechanism, const WorkspaceP
                                     const std::pair<std::string, std::vector<double>>& design) {
   ShownDesigns shown = prepare_designs(mechanism, plan, mode, motions);
   add_design(shown, design.first, design.second);
+  shown.designs.front().sizes = workspace_sizes(shown, shown.designs.front());
   return shown;
 }
 

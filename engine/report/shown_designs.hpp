@@ -39,6 +39,7 @@ struct ShownDesign {
   std::vector<std::array<double, 2>> fixed_range = {};
   std::string problem = {};             ///< reason why the design has no workspace; "" if it has one
   std::vector<ShownSolid> solids = {};  ///< largest solids in the workspace, if the study measures them
+  std::vector<ShownSolid> sizes = {};   ///< largest box and cylinder of any proportions, as measures of the size
 };
 
 /// Resolution at which a page samples its designs.

@@ -4,6 +4,7 @@
 
 #include "engine/core/catalogue.hpp"
 #include "engine/export/isosurface.hpp"
+#include "engine/mechanism/design_facts.hpp"
 #include "engine/report/packed_array.hpp"
 #include "engine/report/panels.hpp"
 #include "engine/workspace/pose_quantities.hpp"
@@ -22,9 +23,8 @@ bool is_shown(const ShownDesigns& shown, const std::string& field) {
   return shown.detail.joints;
 }
 
-/// The boundary surface: one packed column for each coordinate of the vertices, and the fields at the vertices by name.
-/// @param shown, design  null if only the feasible cells are known: vertices are then interpolated, and there are no
-/// fields
+/// The boundary surface: one packed column for each coordinate of the vertices, and the vertices of its triangles.
+/// @param shown, design  null if only the feasible cells are known: vertices are then interpolated
 Json surface_json(const ShownDesigns* shown, const ShownDesign* design, const WorkspaceFields& workspace) {
   std::optional<PoseMargin> margin;
   if (shown) margin.emplace(shown->mechanism, design->parameters, shown->plan.limits);
@@ -37,14 +37,7 @@ Json surface_json(const ShownDesigns* shown, const ShownDesign* design, const Wo
     for (const auto& vertex : found.vertices) values.push_back(vertex[axis]);
     vertices.push_back(packed_quantised(values));
   }
-  Json json = {{"vertices", vertices}, {"triangles", packed_integers(indices)}, {"values", Json::object()}};
-  if (!shown) return json;
-  std::vector<Pose<double>> poses;
-  for (const auto& point : found.inside) poses.push_back(workspace.pose(point));
-  for (const WorkspaceField& field :
-       fields_at(shown->mechanism, design->parameters, shown->plan.limits, shown->mode, poses))
-    if (is_shown(*shown, field.name)) json["values"][field.name] = packed_quantised(field.values);
-  return json;
+  return {{"vertices", vertices}, {"triangles", packed_integers(indices)}};
 }
 
 /// JSON of a solid: its centre, its extents by axis, the axes of each ball (see SolidShape), and the text that
@@ -94,8 +87,15 @@ Json workspace_json(const std::string& name, const WorkspaceFields& found, const
         {{"name", field.name}, {"unit", field.unit}, {"meaning", field.meaning}, {"values", packed_quantised(values)}});
   }
   if (!surface_unsupported(names_of(found.axes))) json["surface"] = surface_json(shown, design, found);
-  if (design)
-    for (const ShownSolid& solid : design->solids) json["solids"].push_back(solid_json(solid));
+  if (!design) return json;
+  for (const ShownSolid& solid : design->solids) json["solids"].push_back(solid_json(solid));
+  for (const ShownSolid& solid : design->sizes) json["sizes"].push_back(solid_json(solid));
+  json["joints"] = axes_data(shown->mechanism.info().joints);
+  if (const DesignFacts* const facts = find_design_facts(shown->mechanism)) {
+    const auto ranges = facts->joint_ranges(design->parameters);
+    for (std::size_t i = 0; i < ranges.size(); ++i)
+      if (ranges[i]) json["joints"][i]["range"] = *ranges[i];
+  }
   return json;
 }
 

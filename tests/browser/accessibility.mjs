@@ -61,8 +61,9 @@ function unnamedElements() {
 }
 
 let checked = 0;
-for (const scheme of ["light", "dark"]) {
-  const page = await Page.open(html, { scheme });
+const page = await Page.open(html);
+for (const scheme of ["dark", "light"]) {
+  await page.page.emulateMedia({ colorScheme: scheme });
   const contrast = await page.page.evaluate(lowContrastTexts);
   assert.deepEqual(contrast.low, [], `low contrast in the ${scheme} theme`);
   const names = await page.page.evaluate(unnamedElements);
@@ -78,6 +79,11 @@ for (const scheme of ["light", "dark"]) {
       const outline = await page.page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
       assert.notEqual(outline, "none", await page.page.evaluate(() => document.activeElement.outerHTML.slice(0, 80)));
     }
+    await page.page.evaluate(() => {
+      document.activeElement.blur();
+      scrollTo({ top: 0, behavior: "instant" });
+    });
+    await page.page.waitForFunction(() => document.querySelector("#contents a.here")?.hash === "#summary");
     await page.page.keyboard.press("j");
     assert.equal(await page.page.evaluate(() => document.activeElement.id), "front");
     // Arrow keys move a slider, and its accessible value changes.
@@ -87,13 +93,13 @@ for (const scheme of ["light", "dark"]) {
     await page.page.keyboard.press("ArrowRight");
     assert.notEqual(await slider.getAttribute("aria-valuetext"), before);
 
-    // Printing gives at most four pages.
-    await page.draw();
+    // Printing, which draws all plots, gives at most four pages.
+    await page.page.waitForFunction(() => window.Plotly);
     const pdf = await page.page.pdf({ preferCSSPageSize: true, printBackground: true });
     writeFileSync(path.join(folder, "report.pdf"), pdf);
     const pages = pdf.toString("latin1").match(/\/Type\s*\/Page\b/g).length;
     assert.ok(pages >= 3 && pages <= 4, `${pages} printed pages`);
   }
-  await page.close();
 }
+await page.close();
 console.log(`${checked} texts with sufficient contrast, all controls named, at most four printed pages`);

@@ -7,7 +7,12 @@ import { folderOf, Page, pkmopt, reportOf, studies } from "./page.mjs";
 const folder = folderOf("conclusions");
 const { file, html } = reportOf(path.join(studies, "quadrupteron.toml"), folder);
 const page = await Page.open(html);
-const [result, active, workspace, next] = await page.page.locator(".conclusions dd").allInnerTexts();
+const [titles, sentences] = await Promise.all(
+  ["dt", "dd"].map((name) => page.page.locator(".conclusions " + name).allInnerTexts()),
+);
+const [result, active, workspace, next] = ["Result", "Active constraints", "Workspace", "Next step"].map(
+  (title) => sentences[titles.indexOf(title)],
+);
 assert.match(result, /workspace-volume .*%.*conditioning .*for the compromise, compared with the baseline/);
 assert.match(active, /active|bound|stage/);
 assert.match(workspace, /^Extent along x \d+ mm, y \d+ mm, phi \d+ deg; conditioning: minimum 0\.\d+, mean 0\.\d+\.$/);
@@ -15,6 +20,7 @@ assert.match(next, /\w/);
 
 // The drawing labels the dimensions that are variables.
 await page.draw("summary");
+await page.comparePicture("Quadrupteron at 1280, light: summary", "#summary .overview");
 const labels = await page.page.evaluate(() =>
   document.querySelector("#summary .plot").layout.scene.annotations.map((annotation) => annotation.text),
 );
@@ -53,7 +59,7 @@ await page.page.mouse.click(...clicked.at);
 await page.page.waitForFunction(() => document.querySelector("#chosen").textContent);
 assert.ok((await page.text("#chosen")).startsWith(clicked.name), await page.text("#chosen"));
 assert.equal(await page.page.locator("#summary th").nth(2).innerText(), clicked.name);
-await page.draw();
+for (const panel of ["summary", "front", "workspace", "mechanism"]) await page.draw(panel);
 assert.notDeepEqual(await page.drawn("workspace"), before[0]);
 assert.notDeepEqual(await page.drawn("mechanism"), before[1]);
 await page.screenshots(folder, "1280-light", ["summary", "front"]);
@@ -61,12 +67,12 @@ await page.screenshots(folder, "1280-light", ["summary", "front"]);
 // The values on the page agree with `pkmopt evaluate`.
 const [, point, stage] = /^point (\d+) of stage (\d+)$/.exec(clicked.name);
 const evaluated = JSON.parse(pkmopt("evaluate", "--from", file, "--front", point, "--stage", stage, "--json"));
-const titles = await page.page
+const values = await page.page
   .locator("#summary tbody td [title]")
   .evaluateAll((list) => list.map((cell) => cell.title));
 const volume = evaluated.objectives["workspace-volume"];
 assert.ok(
-  titles.some((title) => Math.abs(parseFloat(title) / volume - 1) < 1e-12),
+  values.some((title) => Math.abs(parseFloat(title) / volume - 1) < 1e-12),
   `${volume} is not in the table`,
 );
 

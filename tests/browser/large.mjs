@@ -19,7 +19,7 @@ l_d = { min = 0.25, max = 1.5 }
 a = 0.2
 [workspace]
 method = "voxels"
-cells = { x = 10, z = 10, theta = 10 }
+cells = { x = 6, z = 6, theta = 6 }
 [[objective]]
 type = "workspace-ratio"
 [[output]]
@@ -47,7 +47,7 @@ const bare = path.join(folder, "bare.html");
 writeFileSync(bare, text.slice(0, scriptBegin) + bareScript + text.slice(text.indexOf("</script>", scriptBegin)));
 
 async function secondsToOpen(file, check = async () => {}) {
-  const page = await Page.open(file);
+  const page = await Page.open(file, { drawsInView: true });
   const begin = performance.now();
   await page.page.waitForFunction(() => window.Plotly);
   const seconds = page.seconds + (performance.now() - begin) / 1000;
@@ -55,20 +55,22 @@ async function secondsToOpen(file, check = async () => {}) {
   await page.close();
   return seconds;
 }
-const seconds = [],
-  bareSeconds = []; // the minimum counts, because other processes may slow down the machine
-for (let i = 0; i < 2; ++i) {
+const seconds = [
+  await secondsToOpen(html, async (page) => {
+    // Plots in view are drawn by themselves.
+    await page.page.waitForFunction(() => document.querySelector("#summary .plot").data?.length > 0);
+    await page.draw("populations");
+    assert.match(await page.text("#populations .lead"), /only every 10th of the 1001 generations/);
+  }),
+];
+const bareSeconds = [await secondsToOpen(bare)];
+const ratio = () => Math.min(...seconds) / Math.min(...bareSeconds);
+for (let i = 0; i < 2 && ratio() >= 3; ++i) {
+  // Another process may have slowed down the first time: the minimum counts.
   bareSeconds.push(await secondsToOpen(bare));
-  seconds.push(
-    await secondsToOpen(html, async (page) => {
-      if (i > 0) return;
-      await page.draw();
-      assert.match(await page.text("#populations .lead"), /only every 10th of the 1001 generations/);
-    }),
-  );
+  seconds.push(await secondsToOpen(html));
 }
-const ratio = Math.min(...seconds) / Math.min(...bareSeconds);
-assert.ok(ratio < 3, `opened in ${seconds.join(", ")} s, a bare page in ${bareSeconds.join(", ")} s`);
+assert.ok(ratio() < 3, `opened in ${seconds.join(", ")} s, a bare page in ${bareSeconds.join(", ")} s`);
 console.log(
-  `${megabytes.toFixed(1)} MB, with plots in ${Math.min(...seconds).toFixed(2)} s, ${ratio.toFixed(1)} times the bare page`,
+  `${megabytes.toFixed(1)} MB, with plots in ${Math.min(...seconds).toFixed(2)} s, ${ratio().toFixed(1)} times the bare page`,
 );

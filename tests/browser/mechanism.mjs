@@ -15,6 +15,11 @@ const { file, html } = reportOf(path.join(studies, name + ".toml"), folder);
 const page = await Page.open(html);
 assert.deepEqual(await page.panels(), expected);
 await page.draw();
+if (name === "4ppa-2par") {
+  await page.comparePicture("4PPa-2PaR at 1280, light: summary", "#summary .overview");
+  await page.expectMargins("summary");
+  await page.expectMargins("mechanism");
+}
 
 // The table of designs agrees with `pkmopt show`, and the best value per generation with the study file.
 const shown = JSON.parse(pkmopt("show", file, "--json")),
@@ -48,7 +53,7 @@ for (const [key, value] of Object.entries(shown.best.design)) {
   );
 }
 const conclusions = await page.page.locator(".conclusions").innerText();
-for (const title of ["Result", "Active constraints", "Workspace", "Next step"]) assert.ok(conclusions.includes(title), title);
+for (const title of ["Result", "Active constraints", "Workspace", "Joints", "Next step"]) assert.ok(conclusions.includes(title), title);
 if (study.motions) assert.match(conclusions, /Motions\s+[^\n]+: (feasible|infeasible at)/);
 if (name === "2t1r-p-hybrid")
   assert.ok((await page.text("#motions")).includes("Quantities in deg"), "no plot of the quantities of the motion");
@@ -94,13 +99,16 @@ for (const panel of ["workspace", "mechanism", "populations"])
   sliders += await page.moveSliders(panel);
 assert.ok(sliders >= 6, `${sliders} sliders`);
 
-// Wide window and dark theme, for one mechanism only, because drawing is slow without a graphics card.
+// Wide and narrow window and dark theme, for one mechanism only, because drawing is slow without a graphics card.
 if (name === "4ppa-2par") {
   await page.page.setViewportSize({ width: 1920, height: 1080 });
-  await page.page.click("#theme");
-  const dark = ["summary", "workspace", "mechanism", "convergence"];
-  for (const panel of dark) await page.draw(panel);
-  await page.screenshots(folder, "1920-dark", dark);
+  await page.page.emulateMedia({ colorScheme: "dark" });
+  await page.draw("summary");
+  await page.comparePicture("4PPa-2PaR at 1920, dark: summary", "#summary .overview");
+  await page.screenshots(folder, "1920-dark", ["summary"]);
+  await page.page.setViewportSize({ width: 800, height: 900 });
+  await page.page.evaluate(() => document.querySelectorAll("#summary .plot").forEach((plot) => plot.data && Plotly.Plots.resize(plot)));
+  await page.expectMargins("summary");
 }
 await page.close();
 console.log(`${name}: ${expected.length} panels, ${compared} values agree with the file, ${sliders} sliders`);

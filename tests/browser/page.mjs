@@ -1,7 +1,7 @@
 // Shared by the tests of the page: creates reports with pkmopt and opens them in Chromium.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync } from "node:fs";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -31,9 +31,20 @@ export function reportOf(toml, folder) {
   return { file, html };
 }
 
+// Pictures are compared as 32 by 24 mean colours. The tolerances are those of fonts and graphics drivers; a missing or
+// dark trace, another theme and another camera exceed them.
+const kColumns = 32,
+  kRows = 24,
+  kMeanDifference = 4, // of 255, mean over the picture
+  kLargestDifference = 90; // of 255
+
 /** A page in the browser. Records console errors, dialogs and requests to anything but the file as problems. */
 export class Page {
-  static async open(html, { width = 1280, scheme = "light" } = {}) {
+  /**
+   * @param drawsInView  true: plots are drawn when they come into view, at full resolution, as for users. Otherwise only
+   *                     draw() draws them, at half resolution: without a graphics card, drawing takes most of the time
+   */
+  static async open(html, { width = 1280, scheme = "light", drawsInView = false } = {}) {
     const browser = await chromium.launch({
       executablePath: CHROMIUM,
       args: ["--no-sandbox", "--enable-unsafe-swiftshader"], // WebGL without a graphics card
@@ -52,6 +63,13 @@ export class Page {
       if (!/^(data|blob):/.test(request.url()) && request.url() !== pathToFileURL(html).href)
         self.problems.push("request: " + request.url());
     });
+    if (!drawsInView)
+      await page.addInitScript(() => {
+        window.IntersectionObserver = class {
+          observe() {}
+          unobserve() {}
+        };
+      });
     const begin = performance.now();
     await page.goto(pathToFileURL(html).href);
     await page
@@ -86,6 +104,8 @@ export class Page {
 
   /** Draws all plots, or those of one panel, and checks that none is empty. */
   async draw(panel) {
+    await this.page.waitForFunction(() => window.Plotly);
+    await this.page.evaluate(() => Plotly.setPlotConfig({ plotGlPixelRatio: 1 })); // default: 2
     await this.page.evaluate((id) => window.report.draw(id), panel);
     const empty = await this.page.locator((panel ? "#" + panel : "main") + " .plot").evaluateAll((plots) =>
       plots.flatMap((plot) => {
@@ -166,8 +186,8 @@ export class Page {
       const scene = layout.scene;
       if (scene)
         return [0.5, 0.45, 0.55, 0.4, 0.6].map((share) => [
-          box.left + share * box.width * 0.9,
-          box.top + share * box.height,
+          box.left + share * box.width,
+          box.top + share * box.height * 0.8, // the colour bar is below the scene
         ]);
       const chosen = node.data[eval(source)(node.data)],
         size = layout._size;
@@ -180,10 +200,77 @@ export class Page {
       await this.page.mouse.move(x - 3, y - 3);
       await this.page.mouse.move(x, y, { steps: 3 });
       const label = this.page.locator(`#${panel} .plot`).first().locator(".hovertext").first();
-      const text = await label.textContent({ timeout: 1000 }).catch(() => "");
+      const text = await label.textContent({ timeout: 4000 }).catch(() => "");
       if (text) return text;
     }
     return "";
+  }
+
+  /** Mean colours [red, green, blue] of the cells of a picture of an element, row by row; and those of its border. */
+  async picture(selector) {
+    const locator = this.page.locator(selector).first();
+    const png = await locator.screenshot();
+    return this.page.evaluate(
+      async ([data, columns, rows]) => {
+        const image = new Image();
+        image.src = "data:image/png;base64," + data;
+        await image.decode();
+        const pixels = (width, height) => {
+          const canvas = Object.assign(document.createElement("canvas"), { width, height });
+          const context = canvas.getContext("2d", { willReadFrequently: true });
+          context.imageSmoothingQuality = "high";
+          context.drawImage(image, 0, 0, width, height);
+          return context.getImageData(0, 0, width, height).data;
+        };
+        const { width, height } = image,
+          full = pixels(width, height),
+          cells = Array.from({ length: columns * rows }, () => [0, 0, 0, 0]);
+        for (let y = 0; y < height; ++y)
+          for (let x = 0; x < width; ++x) {
+            const cell = cells[Math.floor((y * rows) / height) * columns + Math.floor((x * columns) / width)];
+            for (let c = 0; c < 3; ++c) cell[c] += full[4 * (y * width + x) + c];
+            ++cell[3];
+          }
+        const isBackground = (x, y) =>
+          [0, 1, 2].every((c) => Math.abs(full[4 * (y * width + x) + c] - full[4 * (2 * width) + c]) < 12);
+        const border = [];
+        for (let y = 2; y < height - 2; ++y) for (const x of [0, 1, width - 2, width - 1]) if (!isBackground(x, y)) border.push([x, y]);
+        return { cells: cells.map(([r, g, b, count]) => [r, g, b].map((sum) => Math.round(sum / count))), border };
+      },
+      [png.toString("base64"), kColumns, kRows],
+    );
+  }
+
+  /**
+   * Compares the picture of an element with that of pictures.json. With BROWSER_PICTURES=write in the environment, writes
+   * it there instead.
+   */
+  async comparePicture(name, selector) {
+    const file = path.join(studies, "..", "pictures.json");
+    const known = JSON.parse(readFileSync(file, "utf8"));
+    const { cells } = await this.picture(selector);
+    const text = cells.map((rgb) => rgb.map((value) => value.toString(16).padStart(2, "0")).join("")).join("");
+    if (process.env.BROWSER_PICTURES === "write") {
+      writeFileSync(file, JSON.stringify({ ...known, [name]: text }, null, 1) + "\n");
+      return;
+    }
+    assert.ok(known[name], `pictures.json has no picture “${name}”`);
+    const differences = cells.flat().map((value, i) => Math.abs(value - parseInt(known[name].slice(2 * i, 2 * i + 2), 16)));
+    const mean = differences.reduce((sum, value) => sum + value, 0) / differences.length,
+      largest = Math.max(...differences);
+    assert.ok(
+      mean < kMeanDifference && largest < kLargestDifference,
+      `${name}: differs from pictures.json by ${mean.toFixed(1)} of 255 on average, by at most ${largest}`,
+    );
+  }
+
+  /** Checks that labels of the plots in an element are not cut off: nothing is drawn at their left and right border. */
+  async expectMargins(panel) {
+    const count = await this.page.locator(`#${panel} .plot`).count();
+    for (let i = 0; i < count; ++i) {
+      const { border } = await this.picture(`#${panel} .plot >> nth=${i}`);
+      assert.deepEqual(border.slice(0, 5), [], `plot ${i + 1} of ${panel} is cut off`);
+    }
   }
 
   /** Saves a screenshot of each panel without the top bar, if BROWSER_PICTURES is set. */

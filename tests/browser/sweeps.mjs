@@ -3,10 +3,20 @@
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
-import { folderOf, Page, pkmopt, reportOf, studies } from "./page.mjs";
+import { folderOf, Page, pkmopt, studies } from "./page.mjs";
 
 const folder = folderOf("sweeps");
-const { file, html } = reportOf(path.join(studies, "full-factorial.toml"), folder);
+const file = path.join(folder, "full-factorial.h5"),
+  curves = path.join(folder, "curves.h5"),
+  toml = path.join(folder, "curves.toml"),
+  html = path.join(folder, "sweeps.html");
+writeFileSync(
+  toml,
+  readFileSync(path.join(studies, "full-factorial.toml"), "utf8").replace("full-factorial", "one-at-a-time"),
+);
+pkmopt("run", path.join(studies, "full-factorial.toml"), "--output", file, "--force", "--quiet");
+pkmopt("run", toml, "--output", curves, "--force", "--quiet");
+pkmopt("report", file, curves, "--output", html, "--force"); // one page for both: opening a page takes long
 const tables = path.join(folder, "tables");
 pkmopt("export", file, "--csv", tables, "--force");
 const [head, ...lines] = readFileSync(path.join(tables, "evaluations.csv"), "utf8").trim().split("\n");
@@ -41,16 +51,11 @@ await page.page.locator("#sweeps select").nth(1).selectOption({ label: "l_d" });
 [{ x, y, z }] = await contours();
 near(z[4][0], volume({ a: x[0] / 1000, b: 0.95, l_d: y[4] / 1000 }));
 await page.screenshots(folder, "1280-light", ["sweeps"]);
-await page.close();
 
-const toml = path.join(folder, "curves.toml");
-writeFileSync(
-  toml,
-  readFileSync(path.join(studies, "full-factorial.toml"), "utf8").replace("full-factorial", "one-at-a-time"),
-);
-const curves = await Page.open(reportOf(toml, folder).html, { scheme: "dark" });
-await curves.draw("sweeps");
-const sizes = await curves.page
+await page.page.click("#theme");
+await page.page.selectOption("#chooser select", "1");
+await page.draw("sweeps");
+const sizes = await page.page
   .locator("#sweeps .plot")
   .evaluateAll((plots) => plots.map((plot) => [plot.data[0].x.length, Math.max(...plot.data[0].x)]));
 assert.deepEqual(
@@ -61,6 +66,6 @@ assert.deepEqual(
     [5, 1200],
   ],
 );
-await curves.screenshots(folder, "1280-dark", ["sweeps"]);
-await curves.close();
+await page.screenshots(folder, "1280-dark", ["sweeps"]);
+await page.close();
 console.log("contours and curves of sweeps");

@@ -41,36 +41,28 @@ generations = 100000
   return file;
 }
 
-{
-  const file = await killed(),
-    html = path.join(folder, "killed.html");
-  pkmopt("report", file, "--output", html, "--force");
-  const page = await Page.open(html);
-  await page.draw("convergence");
-  assert.match(await page.text("#summary"), /still running/);
-  assert.ok((await page.panels()).includes("mechanism"));
-  await page.close();
-}
-
-// A study file that an earlier program version wrote when it was interrupted.
-{
-  const name = "interrupted-schema-3",
-    html = path.join(folder, name + ".html");
-  pkmopt("report", path.join(process.env.BROWSER_DATA, name + ".h5"), "--output", html, "--force");
-  const page = await Page.open(html);
-  const panels = ["summary", "front", "workspace", "mechanism", "convergence", "populations"];
-  assert.deepEqual(await page.panels(), panels);
-  for (const panel of ["convergence", "front", "populations"]) await page.draw(panel);
-  assert.match(await page.text("#summary"), /interrupted/);
-  await page.close();
-}
-
-const html = path.join(folder, "unreadable.html");
-pkmopt("report", path.join(process.env.BROWSER_DATA, "schema-3.h5"), "--output", html, "--force");
+// One page for all three, because opening a page takes long: a study whose process was killed, one that an earlier
+// program version wrote when it was interrupted, and one whose text this version cannot read.
+const files = [await killed(), ...["interrupted-schema-3", "schema-3"].map((name) => path.join(process.env.BROWSER_DATA, name + ".h5"))];
+const html = path.join(folder, "unfinished.html");
+pkmopt("report", ...files, "--output", html, "--force");
 const page = await Page.open(html);
+const choose = async (i) => {
+  await page.page.selectOption("#chooser select", String(i));
+  return (await page.panels()).filter((panel) => panel !== "comparison");
+};
+
+assert.ok((await choose(0)).includes("mechanism"));
+await page.draw("convergence");
+assert.match(await page.text("#summary"), /still running/);
+
+assert.deepEqual(await choose(1), ["summary", "front", "workspace", "mechanism", "convergence", "populations"]);
+for (const panel of ["convergence", "front", "populations"]) await page.draw(panel);
+assert.match(await page.text("#summary"), /interrupted/);
+
+assert.deepEqual(await choose(2), ["summary", "workspace", "convergence", "populations"]);
 await page.draw();
 assert.match(await page.text("#summary"), /cannot read the study's text/);
-assert.deepEqual(await page.panels(), ["summary", "workspace", "convergence", "populations"]);
 await page.screenshots(folder, "unreadable", ["summary"]);
 await page.close();
 console.log("interrupted, running and unreadable studies have reports");

@@ -43,11 +43,7 @@ class Cells {
     };
     this.values = new Map(packed.fields.map((field) => [field.name, shown(field.name, field.values)]));
     const { surface } = packed; // only if three coordinates are swept
-    this.surface = surface && {
-      vertices: surface.vertices.map(unpack),
-      triangles: unpack(surface.triangles),
-      values: new Map(Object.entries(surface.values).map(([field, values]) => [field, shown(field, values)])),
-    };
+    this.surface = surface && { vertices: surface.vertices.map(unpack), triangles: unpack(surface.triangles) };
   }
   centre(axis, k) {
     return this.axes[axis].lower + (k + 0.5) * this.axes[axis].step;
@@ -105,9 +101,25 @@ function sharedRange(designs, axis) {
   return [(low - margin) * shownScale(unit), (high + margin) * shownScale(unit)];
 }
 
-/** Range of a field over all designs. */
+/** Value below which this share of the values lies. */
+function percentile(sorted, share) {
+  return sorted[Math.round(share * (sorted.length - 1))];
+}
+
+/**
+ * Range of the colours of a field: the 2nd to the 98th percentile over the feasible cells of all designs. A few extreme
+ * values would otherwise give most cells the same colour.
+ */
 function fieldRange(designs, field) {
-  const [low, high] = rangeOf(designs.flatMap((d) => rangeOf(d.values.get(field) || [])));
+  const key = "range of " + field; // sorting takes long
+  const ranges = designs.map((design) => {
+    if (!design[key]) {
+      const sorted = Float64Array.from(design.values.get(field) ?? []).filter(Number.isFinite).sort();
+      design[key] = sorted.length ? [percentile(sorted, 0.02), percentile(sorted, 0.98)] : [];
+    }
+    return design[key];
+  });
+  const [low, high] = rangeOf(ranges.flat());
   return high - low > 1e-9 * Math.abs(high) ? [low, high] : widened([low, high]); // the field is constant
 }
 
@@ -161,7 +173,7 @@ function planeTraces(
   matrix,
   across,
   up,
-  { range, title, unit, lines = true, bar = true, colours = fieldColours },
+  { range, title, unit, lines = true, bar = true, colours = fieldColours() },
 ) {
   const [h, v] = [design.axes[across], design.axes[up]];
   const x = design.centres(across).map((value) => value * shownScale(h.unit)),

@@ -237,7 +237,7 @@ function addOverlayPlots(studies, grid) {
             }
           : {
               data: group.map(({ study, i, cells }) =>
-                surfaceTrace(cells, null, null, order, {
+                surfaceTrace(cells, order, {
                   name: label(study.name),
                   color: studyColour(i),
                   opacity: 0.4,

@@ -35,7 +35,7 @@ function frontTraces(study, x, y, byColour) {
       ...(third >= 0
         ? {
             color: front.points.map((p) => p.objectives[third]),
-            colorscale: fieldColours,
+            colorscale: fieldColours(),
             cmin: Math.min(...all),
             cmax: Math.max(...all),
             showscale: f === 0,

@@ -1,12 +1,15 @@
 // Panel "Mechanism": the links to scale at the stored poses, in front view, top view and 3-D, with the workspace.
 
+const otherColours = ["#56b4e9", "#d55e00", "#b8a000", "#009e73", "#cc79a7", "#0072b2"]; // of parts that are no limbs
+
 function partColour(part, parts) {
   if (part === "frame") return "#8893a0";
+  if (part === "motors") return document.documentElement.dataset.theme === "dark" ? "#b3bdc8" : "#4d5966";
   if (part === "platform") return document.documentElement.dataset.theme === "dark" ? "#e2e6eb" : "#2b3440";
   const isLimb = (name) => name.startsWith("limb ");
   if (isLimb(part)) return limbColours[parts.filter(isLimb).indexOf(part) % limbColours.length];
-  const others = parts.filter((name) => !isLimb(name) && name !== "frame" && name !== "platform");
-  return ["#56b4e9", "#d55e00", "#b8a000"][others.indexOf(part) % 3];
+  const others = parts.filter((name) => !isLimb(name) && !/^(frame|motors|platform)$/.test(name));
+  return otherColours[others.indexOf(part) % otherColours.length];
 }
 
 const cartesian = ["x", "y", "z"]; // roles of the coordinates that are positions in space
@@ -203,6 +206,87 @@ function isPlanar({ coordinates }) {
   );
 }
 
+/**
+ * The intervals of the joints' ranges that the first design uses: at the centres of the feasible cells, and along each
+ * motion. None without joint positions or ranges.
+ * @returns [{ by: "the workspace", joint, used: [low, high], share in percent }, ..]
+ */
+function jointUses({ workspace, motions }) {
+  const packed = workspace?.designs[0];
+  if (!packed?.joints) return [];
+  const cells = (packed.cells ??= new Cells(packed));
+  const use = (by, joint, values) => {
+    if (!joint.range || !values) return [];
+    const used = rangeOf(Array.from(values).filter(Number.isFinite));
+    const share = Math.round((100 * (used[1] - used[0])) / (joint.range[1] - joint.range[0]));
+    return Number.isFinite(share) ? [{ by, joint, used, share }] : [];
+  };
+  const inSI = (joint) => cells.values.get(joint.name)?.map((value) => value / shownScale(joint.unit)); // of display units
+  return [
+    ...packed.joints.flatMap((joint) => use("the workspace", joint, inSI(joint))),
+    ...(motions?.motions ?? []).flatMap(({ name, designs: [{ positions }] }) =>
+      packed.joints.flatMap((joint, i) => use("the motion " + name, joint, positions && unpack(positions[i]))),
+    ),
+  ];
+}
+
+/** Box with the used joint ranges as bars; null if they are unknown. */
+function jointBox(study) {
+  const uses = jointUses(study);
+  if (!uses.length) return null;
+  const box = element("div", "box", element("h3", "", "Used joint ranges"));
+  for (const by of new Set(uses.map((use) => use.by))) {
+    const bars = element("div", "bars");
+    for (const { joint, used, share } of uses.filter((use) => use.by === by)) {
+      const [low, high] = joint.range;
+      const percent = (value) => (100 * (value - low)) / (high - low);
+      const filled = element("i");
+      filled.style.marginLeft = percent(used[0]) + "%";
+      filled.style.width = percent(used[1]) - percent(used[0]) + "%";
+      const [from, to] = used.map((value) => shownValue(value, joint, 3));
+      const range = `${shownValue(low, joint, 3)} .. ${shownValue(high, joint, 3)}`;
+      bars.append(
+        element("span", "", joint.name),
+        element("div", "bar", filled),
+        element("span", "", `${share} %: ${from} .. ${to} of ${range}`),
+      );
+    }
+    box.append(element("p", "caption", by[0].toUpperCase() + by.slice(1)), bars);
+  }
+  return box;
+}
+
+/** Bodies with equal masses whose names differ in numbers only: [{ name, number, mass of each }]. */
+function massGroups(masses) {
+  const groups = [];
+  for (const { name, mass } of masses) {
+    const common = name.replace(/\s*\d+/g, "");
+    const known = groups.find((group) => group.name === common && Math.abs(group.mass - mass) <= 1e-9 * mass);
+    if (known) ++known.number;
+    else groups.push({ name: common, number: 1, mass });
+  }
+  return groups;
+}
+
+/** Box with the masses of the bodies of a design; null if the study uses no masses. */
+function massBox({ name, masses }) {
+  if (!masses) return null;
+  const rows = massGroups(masses).map((group) => [
+    group.name,
+    String(group.number),
+    measured(group.mass, "kg"),
+    measured(group.number * group.mass, "kg"),
+  ]);
+  rows.push(["all", String(masses.length), "", measured(masses.reduce((sum, { mass }) => sum + mass, 0), "kg")]);
+  return element(
+    "div",
+    "box",
+    element("h3", "", "Masses of the moving bodies, " + name),
+    element("p", "caption", "Without motors and other parts of the drive trains."),
+    simpleTable(["body", "number", "mass of each", "mass of all"], rows),
+  );
+}
+
 function showMechanism(study, panel) {
   const { designs, mode } = study.mechanism;
   const all = designs.map(posesOf);
@@ -217,6 +301,7 @@ function showMechanism(study, panel) {
         (all.some((design) => design.motions.length)
           ? "; the player shows the " + (study.motions?.omitted ? `first ${all[0].motions.length} ` : "") + "motions"
           : "") +
+        (all.some((design) => design.parts.includes("motors")) ? ". The size of the motors is schematic" : "") +
         (hasWorkspace ? ". The blue region is the workspace" + (rotates ? " at this rotation" : "") : "") +
         ".",
     ),
@@ -340,7 +425,7 @@ function showMechanism(study, panel) {
             uirevision: "camera",
             margin: { l: 0, r: 0, t: 0, b: 0 },
             legend: { orientation: "h", x: 0, y: 0, yanchor: "bottom", bgcolor: faded(colour("box"), 0.6) },
-            scene: spaceScene(ranges, Math.sqrt(distance)), // nearer than proposed: readers can zoom
+            scene: spaceScene(ranges, 1.45 * distance),
           },
         };
       },
@@ -350,5 +435,8 @@ function showMechanism(study, panel) {
     plots = [addPlaneView("Plane of motion", 0, 1, 694)];
   } else plots = [(spacePlot = addSpaceView()), addPlaneView("Front view", 0, 2), addPlaneView("Top view", 0, 1)];
   grid.append(column);
-  grid.append(element("div", "box", element("h3", "", "Values at this pose"), feasibility, readout));
+  grid.append(
+    element("div", "box", element("h3", "", "Values at this pose"), feasibility, readout),
+    ...[jointBox(study), massBox(designs[0])].filter(Boolean),
+  );
 }

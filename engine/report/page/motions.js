@@ -91,7 +91,7 @@ function motionSummary(motion, joints) {
   const rows = [],
     head = ["design", "", ...joints.map((joint) => joint.name), "all"];
   const unitsOf = (column) => joints.map((joint) => motionColumns[column][joint.unit][2]);
-  for (const { name, summary } of motion.designs) {
+  for (const { name, summary, drives } of motion.designs) {
     const add = (title, values, units, total) =>
       values &&
       rows.push([
@@ -113,6 +113,7 @@ function motionSummary(motion, joints) {
     add("peak motor torque", summary.peak_motor_torque, all("N m"));
     add("RMS motor torque", summary.rms_motor_torque, all("N m"));
     add("peak motor speed", summary.peak_motor_speed, all("rad/s"));
+    if (drives) rows.push([name, "drives", ...joints.map(() => ""), drivesText(drives)]);
     if (summary.energy !== undefined) {
       rows.push([
         name,
@@ -227,7 +228,7 @@ function showMotions(study, panel) {
       height: 360,
       make: () => ({
         data: conditioningAlong(motion()),
-        layout: { xaxis: axis("time [s]"), yaxis: axis("inverse condition number [1]", { rangemode: "tozero" }) },
+        layout: { xaxis: axis("time [s]"), yaxis: axis("conditioning", { rangemode: "tozero" }) },
       }),
     }),
   );

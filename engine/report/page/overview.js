@@ -143,15 +143,59 @@ function workspaceSentence({ workspace }) {
     const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
     return [`; ${name}: minimum ${digits(rangeOf(values)[0], 3)}, mean ${digits(mean, 3)}`];
   });
-  const solids = (cells.solids ?? []).map((solid) => "; " + solidText(solid));
-  return ["Extent along " + extents.join(", "), ...solids, ...indices, "."];
+  const solids = cells.solids ?? [];
+  const sizes = (cells.sizes ?? []).filter(({ shape }) => solids.every((solid) => solid.shape !== shape));
+  return [
+    "Extent along " + extents.join(", "),
+    ...[...solids, ...sizes].map((solid) => "; " + solidText(solid)),
+    ...indices,
+    ".",
+  ];
+}
+
+/** The shares of the joints' ranges that the workspace and the motions use; null if they are unknown. */
+function jointsSentence(study) {
+  const uses = jointUses(study);
+  if (!uses.length) return null;
+  const sentences = [...new Set(uses.map((use) => use.by))].map((by) => {
+    const own = uses.filter((use) => use.by === by);
+    const shares = [...new Set(own.map((use) => use.share))].map((share) => {
+      const joints = own.filter((use) => use.share === share).map(({ joint }) => joint.name);
+      return `${share} % of the range of ${joints.join(", ")}`;
+    });
+    return `${by} uses ${shares.join("; ")}.`;
+  });
+  return sentences.map((text) => text[0].toUpperCase() + text.slice(1)).join(" ");
+}
+
+/** The total mass of the moving bodies, and the masses of groups of equal bodies; null if the study uses no masses. */
+function massesSentence({ mechanism }) {
+  const masses = mechanism?.designs[0].masses;
+  if (!masses) return null;
+  const groups = massGroups(masses);
+  const kilograms = (mass) => quantity(mass, "kg", 4);
+  return (
+    `Moving bodies ${kilograms(masses.reduce((sum, { mass }) => sum + mass, 0))}: ` +
+    groups.map(({ name, number, mass }) => (number > 1 ? `${number} × ` : "") + `${name} ${kilograms(mass)}`).join(", ") +
+    "."
+  );
+}
+
+/** Verdict on the drives along a motion; "" if the study gives no ratings. */
+function drivesText(drives) {
+  if (!drives) return "";
+  const what = drives.motor ? `motor ${drives.motor}` : "drives";
+  return (
+    `${what} ${drives.reserve >= 1 ? "sufficient" : "not sufficient"}, reserve ${digits(drives.reserve, 3)} ` +
+    `(${drives.rating} of ${drives.joint})`
+  );
 }
 
 /** For each motion, whether the shown design can follow it, and its loads; null without motions. */
 function motionsSentence({ motions }) {
   if (!motions) return null;
   const most = (values) => Math.max(...values);
-  return motions.motions.map(({ name, samples, designs: [{ summary }] }, k) => {
+  return motions.motions.map(({ name, samples, designs: [{ summary, drives }] }, k) => {
     const loads = [
       summary.peak_total_power === undefined ? "" : `peak power ${quantity(summary.peak_total_power, "W", 3)}`,
       summary.energy_drawn === undefined ? "" : `energy ${quantity(summary.energy_drawn, "J", 3)}`,
@@ -161,18 +205,20 @@ function motionsSentence({ motions }) {
         : "",
     ].filter(Boolean);
     const verdict = summary.infeasible ? `infeasible at ${summary.infeasible} of ${samples} samples` : "feasible";
-    return `${k ? "; " : ""}${name}: ${[verdict, ...loads].join(", ")}` + (k + 1 === motions.motions.length ? "." : "");
+    return `${k ? "; " : ""}${name}: ${[verdict, drivesText(drives), ...loads].filter(Boolean).join(", ")}` + (k + 1 === motions.motions.length ? "." : "");
   });
 }
 
-/** Conclusions: result, active constraints, workspace, motions, next step. */
+/** Conclusions: result, active constraints, workspace, joints, motions, masses, next step. */
 function conclusions(study) {
   const list = element("dl", "conclusions");
   for (const [title, sentence] of [
     ["Result", resultSentence(study)],
     ["Active constraints", activeSentence(study)],
     ["Workspace", workspaceSentence(study)],
+    ["Joints", jointsSentence(study)],
     ["Motions", motionsSentence(study)],
+    ["Masses", massesSentence(study)],
     ["Next step", nextSentence(study)],
   ])
     if (sentence) list.append(element("dt", "", title), element("dd", "", ...sentence));
@@ -281,7 +327,7 @@ function addDrawing(study, grid, poses) {
               }),
             ),
             layout: {
-              scene: { ...spaceScene(ranges, 1.25 * distance), annotations: dimensionLabels(dimensions, poses, pose, [0, 1, 2]) },
+              scene: { ...spaceScene(ranges, 1.5 * distance), annotations: dimensionLabels(dimensions, poses, pose, [0, 1, 2]) },
               uirevision: "camera",
               margin: { l: 0, r: 0, t: 0, b: 0 },
             },
@@ -296,14 +342,17 @@ function addWorkspacePlot(study, grid, cells) {
   const range = field && fieldRange([cells], field.name);
   return addPlot(grid, {
     title: "Workspace",
-    caption: "Feasible poses" + (field ? ", coloured by " + fieldTitle(field.name) : "") + ".",
+    caption:
+      "Feasible poses" +
+      (field ? (isVolume ? ": the boundary, and slices coloured by " : ", coloured by ") + fieldTitle(field.name) : "") +
+      ".",
     size: "half",
     height: 520,
     make: (distance) => {
       if (isVolume && cells.surface)
         return {
-          data: [surfaceTrace(cells, field?.name, range, order)],
-          layout: { scene: workspaceScene([cells], order, distance), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+          data: workspaceTraces(cells, order, middleSlices(cells, order), field, range),
+          layout: workspaceLayout([cells], order, distance),
         };
       const matrix = cells.slice(field?.name, { across: order[0], up: order[1] }, 0);
       return cellsPlot([cells], cells, matrix, order[0], order[1], {

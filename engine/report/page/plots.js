@@ -3,7 +3,11 @@
 // The colour-blind safe palette of Okabe and Ito (2008), with two more colours for the seventh and eighth limb.
 const limbColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c6d31", "#7f7f7f"];
 const seriesColours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"];
-const fieldColours = "Cividis"; // perceptually uniform
+// Cividis, which is perceptually uniform; in the dark theme without its dark end, which would not be visible there.
+const fieldColours = () =>
+  document.documentElement.dataset.theme === "dark"
+    ? [[0, "#4a556c"], [0.33, "#7d7c78"], [0.67, "#bcae6f"], [1, "#fee838"]]
+    : "Cividis";
 const timeColours = "Viridis";
 
 const plots = [];
@@ -71,6 +75,18 @@ function colourBar(title) {
   return { title: { text: title, side: "right" }, thickness: 12, outlinewidth: 0, len: 0.92, tickfont: { size: 12 } };
 }
 
+/** A colour bar below the plot, for 3-D scenes, which need the width. */
+function lowColourBar(title) {
+  return {
+    ...colourBar(title),
+    title: { text: title, side: "top" },
+    orientation: "h",
+    y: 0,
+    yanchor: "bottom",
+    len: 0.8,
+  };
+}
+
 function layoutOf(more) {
   return {
     paper_bgcolor: "rgba(0,0,0,0)",
@@ -89,8 +105,7 @@ function layoutOf(more) {
 /**
  * Adds a box with a plot to `parent`.
  * @param options  title; caption; size (CSS class "half" or none); height [px]; make(distance) gives { data, layout },
- *                 where `distance` >= 1 is the factor by which a 3-D camera must move back if the box is taller than
- *                 wide
+ *                 where `distance` >= 1 is the factor by which a 3-D camera must move back if the box is narrow
  * @returns { box, node, update(), .. }; update() redraws a plot that has been drawn
  */
 function addPlot(parent, { title, caption, size = "", height = 380, make }) {
@@ -129,7 +144,7 @@ function addPlot(parent, { title, caption, size = "", height = 380, make }) {
     update(first = false) {
       if (!first && !plot.drawn) return;
       plot.drawn = true;
-      const { data, layout } = make(Math.max(1, node.clientHeight / (node.clientWidth || node.clientHeight)));
+      const { data, layout } = make(Math.max(1, (1.1 * node.clientHeight) / (node.clientWidth || node.clientHeight)));
       plot.done = Plotly.react(node, data, layoutOf(layout), {
         responsive: true,
         displaylogo: false,

@@ -155,7 +155,7 @@ function addTaskWorkspaces(task, grid) {
           own = order.filter((k) => k >= 0).length;
         const style = { name: label(robot.name), color: seriesColours[i % seriesColours.length], opacity: 0.3, showlegend: true };
         if (count === 2) return own === 2 ? [outlineTrace(cells, order, style.name, style.color)] : [];
-        if (own === 3) return [surfaceTrace(cells, null, null, order, style)];
+        if (own === 3) return [surfaceTrace(cells, order, style)];
         return own === 2 ? [flatTrace(cells, task, order, style)] : [];
       });
       data.push(...boxTraces(task, ranges), ...pathTraces(task));

@@ -1,20 +1,14 @@
 // Panel "Workspace": boundary surface, slices and column lengths of the designs, with common axes and colours.
 
 /**
- * 3-D trace of the boundary surface, coloured by a field if the design has it.
+ * 3-D trace of the boundary surface.
  * @param order  indices of the axes that are drawn as x, y and z
  */
-function surfaceTrace(design, field, range, order, more = {}) {
+function surfaceTrace(design, order, more = {}) {
   const { vertices, triangles } = design.surface;
-  const values = design.surface.values.get(field);
-  const shown = order.map((k) => Array.from(vertices[k], (value) => value * shownScale(design.axes[k].unit)));
-  const info = design.fields.find((f) => f.name === field);
-  const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
-  const intensity = values && Array.from(values);
   const axes = order.map((k) => design.axes[k]);
-  const template = axes
-    .map((a, i) => `${label(a.name)} %{${"xyz"[i]}:.4g} ${label(unitText(shownUnit(a.unit)))}`)
-    .join("<br>");
+  const shown = order.map((k) => Array.from(vertices[k], (value) => value * shownScale(design.axes[k].unit)));
+  const corner = (c) => Array.from({ length: triangles.length / 3 }, (_, t) => triangles[3 * t + c]);
   return {
     type: "mesh3d",
     x: shown[0],
@@ -24,21 +18,84 @@ function surfaceTrace(design, field, range, order, more = {}) {
     j: corner(1),
     k: corner(2),
     name: design.name,
-    ...(values
-      ? {
-          intensity,
-          cmin: range[0],
-          cmax: range[1],
-          colorscale: fieldColours,
-          colorbar: colourBar(axisName(fieldTitle(field), info.unit === "mixed" ? "1" : info.unit)),
-          text: intensity.map((value) => label(fieldTitle(field)) + " " + digits(value)),
-        }
-      : { color: seriesColours[0], text: "" }),
-    hovertemplate: template + (values ? "<br>%{text}" : "") + "<extra></extra>",
+    color: "#56b4e9",
+    hovertemplate: spaceTemplate(axes) + "<extra></extra>",
     lighting: { ambient: 0.72, diffuse: 0.5, specular: 0.08, roughness: 0.9, fresnel: 0.05 },
     lightposition: { x: 1e4, y: -2e4, z: 3e4 },
     flatshading: false,
     ...more,
+  };
+}
+
+/** Hover template with the three coordinates of a point in space. */
+function spaceTemplate(axes) {
+  return axes
+    .map((a, i) => `${label(a.name)} %{${"xyz"[i]}:.4g} ${label(unitText(shownUnit(a.unit)))}`)
+    .join("<br>");
+}
+
+/**
+ * 3-D traces of slices, coloured by a field.
+ * @param order   indices of the axes that are drawn as x, y and z
+ * @param slices  for each slice, the fixed axis and its value
+ * @param field   information on the field: name, unit
+ */
+function sliceTraces(design, order, slices, field, range) {
+  const title = fieldTitle(field.name);
+  return slices.flatMap(({ fixed, value }, s) => {
+    const layer = design.layer(fixed, value);
+    if (layer < 0) return [];
+    const [across, up] = order.filter((k) => k !== fixed);
+    const matrix = design.slice(field.name, { fixed, across, up }, layer);
+    const centres = (k) => design.centres(k).map((centre) => centre * shownScale(design.axes[k].unit));
+    const [xs, ys] = [centres(across), centres(up)];
+    const coordinate = (k) =>
+      matrix.map((row, j) =>
+        row.map((cell, i) =>
+          cell === null ? null : k === fixed ? value * shownScale(design.axes[k].unit) : k === across ? xs[i] : ys[j],
+        ),
+      );
+    return {
+      type: "surface",
+      x: coordinate(order[0]),
+      y: coordinate(order[1]),
+      z: coordinate(order[2]),
+      surfacecolor: matrix,
+      cmin: range[0],
+      cmax: range[1],
+      colorscale: fieldColours(),
+      showscale: s === 0,
+      colorbar: lowColourBar(axisName(title, field.unit === "mixed" ? "1" : field.unit)),
+      connectgaps: false,
+      contours: Object.fromEntries(["x", "y", "z"].map((name) => [name, { highlight: false }])),
+      lighting: { ambient: 1, diffuse: 0, specular: 0 },
+      hovertemplate:
+        spaceTemplate(order.map((k) => design.axes[k])) +
+        `<br>${label(title)} %{surfacecolor:.4g} ${label(unitText(field.unit === "mixed" ? "1" : field.unit))}<extra></extra>`,
+    };
+  });
+}
+
+/** 3-D traces of a workspace: slices within the translucent boundary surface; without fields, the surface alone. */
+function workspaceTraces(design, order, slices, field, range) {
+  if (!field) return [surfaceTrace(design, order, design.solids ? { opacity: 0.3 } : {})];
+  return [...sliceTraces(design, order, slices, field, range), surfaceTrace(design, order, { opacity: 0.16 })];
+}
+
+/** The slices at the middle of the workspace normal to the two axes that are drawn horizontally. */
+function middleSlices(design, order) {
+  return order.slice(0, 2).map((fixed) => {
+    const [low, high] = feasibleRange([design], fixed);
+    return { fixed, value: (low + high) / 2 };
+  });
+}
+
+/** Layout of a 3-D plot of workspaces, with room for the colour bar below it. @param distance  from addPlot() */
+function workspaceLayout(designs, order, distance) {
+  return {
+    scene: { ...workspaceScene(designs, order, distance), domain: { y: [0.13, 1] } },
+    uirevision: "camera",
+    margin: { l: 0, r: 0, t: 0, b: 0 },
   };
 }
 
@@ -163,7 +220,7 @@ function sceneOf(axes, ranges, distance) {
     aspectratio: toScale
       ? Object.fromEntries(extents.map((e, i) => ["xyz"[i], (1.2 * e) / largest]))
       : { x: 1, y: 1, z: 1 },
-    camera: { eye: { x: 1.6 * distance, y: -2.05 * distance, z: 1.05 * distance }, center: { x: 0, y: 0, z: -0.08 } },
+    camera: { eye: { x: 1.4 * distance, y: -1.8 * distance, z: 0.92 * distance }, center: { x: 0, y: 0, z: -0.08 } },
   };
 }
 
@@ -197,6 +254,22 @@ function initialField({ fields }) {
   return Math.max(0, names.indexOf(names.includes("dci_worst") ? "dci_worst" : "conditioning"));
 }
 
+/**
+ * Volumes of the designs: those of the table in the summary, if the study computes them; otherwise the numbers of cells.
+ * @returns { volumes, by }: children of an element, and how the volumes were found
+ */
+function workspaceVolumes({ summary }, designs) {
+  const row = summary?.table?.rows.find(({ kind, name }) => /^(objective|output)$/.test(kind) && name === "workspace-volume");
+  const inTable = ({ name }) => row?.values[summary.table.columns.findIndex((column) => column.name === name)];
+  const known = designs.every((design) => Number.isFinite(inTable(design)));
+  const volumes = designs.flatMap((d, i) => [
+    i ? ", " : "",
+    d.name + " ",
+    known ? result(inTable(d), row.unit) : result(d.volume, d.volume_unit),
+  ]);
+  return { volumes, by: known ? "" : " by counting these cells" };
+}
+
 function showWorkspace(study, panel) {
   const designs = study.workspace.designs.map((packed) => (packed.cells ??= new Cells(packed)));
   for (const problem of study.workspace.problems) panel.append(element("p", "warning", problem));
@@ -211,14 +284,14 @@ function showWorkspace(study, panel) {
         .map((d) => d.fixed.map((axis) => `${axis.name} = ${shownValue(axis.value, axis)}, ${axis.note}`).join("; ")),
     ),
   ];
-  const volumes = designs.flatMap((d, i) => [i ? ", " : "", d.name + " ", result(d.volume, d.volume_unit)]);
+  const { volumes, by } = workspaceVolumes(study, designs);
   panel.append(
     element(
       "p",
       "lead",
       "Feasible poses" +
         (fixedValues.length ? " at " + fixedValues.join("; ") : "") +
-        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. ${["Length", "Area", "Volume"][order.length - 1]} by counting these cells: `,
+        `, on ${order.map((k) => first.axes[k].cells).join(" × ")} cells. ${["Length", "Area", "Volume"][order.length - 1]}${by}: `,
       ...volumes,
       "." +
         (designs.length > 1
@@ -226,7 +299,7 @@ function showWorkspace(study, panel) {
           : ""),
     ),
   );
-  const size = designs.length > 1 ? "half" : "";
+  const size = "half";
   const names = first.fields.map((field) => field.name);
   const controls = element("div", "controls"),
     grid = element("div", "grid");
@@ -250,29 +323,33 @@ function showWorkspace(study, panel) {
   };
   current();
 
+  const sliceBar = element("div", "controls box");
+  if (isVolume) grid.append(sliceBar);
+  const slice = sliceControls(sliceBar, designs, () => all.forEach((plot) => plot.update()));
   const surfaces = (isVolume ? designs : []).map((design) =>
     addPlot(grid, {
       title: design.name[0].toUpperCase() + design.name.slice(1),
       size,
       height: 520,
-      ...(design.solids ? { caption: `The ${design.solids.map(solidText).join("; ")}.` } : {}),
+      caption:
+        (names.length ? "The boundary, and two slices in colour." : "The boundary.") +
+        (design.solids ? ` The ${design.solids.map(solidText).join("; ")}.` : ""),
       make(distance) {
         const info = current();
+        const other = middleSlices(design, order).find(({ fixed }) => fixed !== slice.fixed);
+        const field = names.length ? info : null;
         return {
           data: [
-            surfaceTrace(design, info.name, fieldRange(designs, info.name), order, design.solids ? { opacity: 0.3 } : {}),
+            ...workspaceTraces(design, order, [slice, other], field, field && fieldRange(designs, info.name)),
             ...(design.solids ?? []).map((solid) => solidTrace(solid, design.axes, order)),
           ],
-          layout: { scene: workspaceScene(designs, order, distance), uirevision: "camera", margin: { l: 0, r: 0, t: 0, b: 0 } },
+          layout: workspaceLayout(designs, order, distance),
         };
       },
     }),
   );
   linkCameras(surfaces);
 
-  const sliceBar = element("div", "controls box");
-  if (isVolume) grid.append(sliceBar);
-  const slice = sliceControls(sliceBar, designs, () => slices.forEach((plot) => plot.update()));
   const slices = designs.map((design) =>
     addPlot(grid, {
       title: isVolume ? "Slice of " + design.name : design.name[0].toUpperCase() + design.name.slice(1),

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -203,7 +205,7 @@ TEST(PageData, SingleDesignHasWorkspaceMechanismAndCoupling) {
     EXPECT_EQ(d["value"], nominal[static_cast<std::size_t>(known - parameters.begin())]);
   }
   EXPECT_THAT(dimensions, IsSupersetOf({"l_11", "l_12", "l_31", "l_42", "l"}));  // some of them have equal values
-  EXPECT_TRUE(study["workspace"]["designs"][0]["surface"]["values"].contains("conditioning"));
+  EXPECT_TRUE(study["workspace"]["designs"][0]["surface"].contains("triangles"));
   EXPECT_FALSE(study.contains("motions"));
 }
 
@@ -312,6 +314,58 @@ optimiser = "ga"
     EXPECT_FALSE(without.contains(key));
   }
   for (std::size_t i = 0; i < 4; ++i) EXPECT_GE(with["peak_motor_torque"][i], with["rms_motor_torque"][i]);
+}
+
+/// The rotary Delta with motors of experiments/mechanisms/motors/fastest-delta.toml.
+json delta_page() {
+  const Study study = load_study_toml(PKM_TEST_DATA "/../../experiments/mechanisms/motors/fastest-delta.toml",
+                                      testing::all_catalogues());
+  const ProblemParts& parts = study.problem->parts();
+  const Mechanism& mechanism = *parts.mechanism;
+  const ShownDesigns shown = evaluate_shown_designs(mechanism, test::voxels(mechanism.info(), 12), "", study.motions,
+                                                    {"nominal", parts.parameters});
+  return json::parse(page_data(shown, "pkmopt"))["studies"][0];
+}
+
+TEST(PageData, DeltaHasSizesJointRangesMassesBaseAndMotors) {
+  const json study = delta_page(), workspace = study["workspace"]["designs"][0];
+  ASSERT_EQ(workspace["sizes"].size(), 2u);
+  EXPECT_EQ(workspace["sizes"][0]["shape"], "cylinder");
+  EXPECT_EQ(workspace["sizes"][1]["shape"], "box");
+  const double diameter = workspace["sizes"][0]["dimensions"][0]["value"];
+  EXPECT_GT(diameter, 0.1);
+  EXPECT_LT(diameter, 1.4);
+  ASSERT_EQ(workspace["joints"].size(), 3u);
+  constexpr double kDegree = std::numbers::pi / 180;  // the file gives -40 deg and 95 deg
+  for (const json& joint : workspace["joints"]) {
+    EXPECT_NEAR(joint["range"][0], -40 * kDegree, 1e-12);
+    EXPECT_NEAR(joint["range"][1], 95 * kDegree, 1e-12);
+  }
+  const json& mechanism = study["mechanism"]["designs"][0];
+  double mass = 0;
+  for (const json& body : mechanism["masses"]) mass += body["mass"].get<double>();
+  // platform 0.25 kg; three tubular cranks 30/26 mm of 200 mm, 2700 kg/m^3; three pairs of rods of 500 mm, 0.12 kg/m
+  const double section = std::numbers::pi / 4 * (0.030 * 0.030 - 0.026 * 0.026);
+  EXPECT_NEAR(mass, 0.25 + 3 * 2700 * section * 0.2 + 3 * 0.12 * 0.5, 1e-12);
+  std::map<std::string, int> parts;
+  for (const json& link : mechanism["links"]) ++parts[link["part"]];
+  EXPECT_EQ(parts["motors"], 3);
+  EXPECT_EQ(parts["frame"], 3);  // the base is a triangle
+}
+
+TEST(PageData, DrivesHaveAVerdictIfTheyHaveRatings) {
+  const json drives = delta_page()["motions"]["motions"][0]["designs"][0]["drives"];
+  EXPECT_EQ(drives["motor"], "200 W");
+  EXPECT_GT(drives["reserve"], 1);
+  EXPECT_THAT(drives["joint"].get<std::string>(), HasSubstr("arm"));
+  // The smallest ratio of a rating to the summary of the same motion: ratings of the file.
+  const json summary = delta_page()["motions"]["motions"][0]["designs"][0]["summary"];
+  double reserve = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    reserve = std::fmin(reserve, 0.64 / summary["rms_motor_torque"][i].get<double>());
+    reserve = std::fmin(reserve, 524 / summary["peak_motor_speed"][i].get<double>());
+  }
+  EXPECT_LE(drives["reserve"], reserve * (1 + 1e-12));
 }
 
 TEST(PageData, InvalidDesignIsReported) {

@@ -1,0 +1,27 @@
+// Facts about a design of a mechanism file, see engine/mechanism/design_facts.hpp.
+#pragma once
+
+#include "engine/generic/evaluation.hpp"
+#include "engine/mechanism/design_facts.hpp"
+
+namespace pkm::generic {
+
+std::vector<std::optional<std::array<double, 2>>> joint_ranges(const Evaluation& e, std::span<const double> parameters);
+std::vector<std::pair<std::string, double>> body_masses(const Evaluation& e, std::span<const double> parameters);
+
+/// Finds the drives of a design, as DesignFacts::drives(). Immutable.
+class DrivePlaces {
+ public:
+  /// @param e     must outlive this object
+  /// @param mode  index in MechanismInfo::modes
+  DrivePlaces(const Evaluation& e, std::span<const double> parameters, std::size_t mode);
+  std::vector<PlacedDrive> operator()(const Pose<double>& pose) const;
+
+ private:
+  std::size_t coordinates_;                ///< position of the coordinates among the inputs
+  std::vector<const JointNodes*> driven_;  ///< joints with drives; those of two parallel rods share one
+  expression::Program program_;            ///< outputs: point, axis and position of each of them
+  std::vector<double> inputs_;             ///< of the design; those of the coordinates are 0
+};
+
+}  // namespace pkm::generic
