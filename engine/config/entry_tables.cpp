@@ -23,7 +23,8 @@ constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRST
 std::string entry_name(const ConfigValue& table, const std::string& type, const std::vector<StudyEntry>& before) {
   const auto given = table.find("name");
   std::string name = given ? given->text("text") : type;
-  if (!given) std::ranges::replace(name, ' ', '-');  // type is the name of a [[design]] of the mechanism file
+  // A type that is the name of a [[design]] of the mechanism file can contain blanks.
+  if (!given) std::ranges::replace(name, ' ', '-');
   const bool has_outer_blanks = name.starts_with(' ') || name.ends_with(' ');
   if (name.empty() || has_outer_blanks || name.find_first_not_of(kLetters) != std::string::npos)
     throw given->error("a name of letters, digits, blanks between them, '-', '_' and '.'");

@@ -84,7 +84,7 @@ std::string message_of(const std::exception& error) {
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
   std::string best;
   if (name.size() > kMaxName) return best;
-  // At this distance or more, a known name is no likely correction.
+  // A known name at this edit distance or more is unlikely to be the intended one.
   std::size_t best_distance = 2 + 2 * std::max<std::size_t>(1, name.size() / 2);
   for (const auto& candidate : known) {
     if (candidate.size() > 2 * kMaxName) continue;  // a name this long would not fit into a message

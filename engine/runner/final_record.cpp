@@ -2,13 +2,13 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <span>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/largest_solid_options.hpp"
+#include "engine/results/active_constraints.hpp"
 #include "engine/runner/design_record.hpp"
 #include "engine/runner/exact_values.hpp"
 #include "engine/runner/progress.hpp"
@@ -46,28 +46,6 @@ MapRecord map_record(const ProblemParts& parts, std::span<const double> paramete
   map.axes.resize(3);  // unused axes get empty names
   map.units.resize(3, "1");
   return map;
-}
-
-/// Sentences for the report: one for each active bound, and one for each active or violated constraint.
-std::vector<std::string> active_sentences(const DesignProblem& problem, const DesignRecord& best) {
-  std::vector<std::string> sentences;
-  const ProblemParts& parts = problem.parts();
-  for (std::size_t i = 0; i < parts.varies.size(); ++i) {
-    if (std::ranges::find(parts.choices, parts.varies[i], &Choice::parameter) != parts.choices.end()) continue;
-    const Variable& v = parts.space[i];
-    const double value = best.parameters[parts.varies[i]], tolerance = 1e-6 * (v.upper - v.lower);
-    if (value - v.lower <= tolerance) sentences.push_back(v.name + " at its lower bound " + with_unit(v.lower, v.unit));
-    if (v.upper - value <= tolerance) sentences.push_back(v.name + " at its upper bound " + with_unit(v.upper, v.unit));
-  }
-  for (std::size_t i = 0; i < best.margins.size(); ++i) {
-    const MarginInfo& m = problem.margins()[i];
-    if (!(best.margins[i] <= 1e-4)) continue;
-    char margin[32];
-    std::snprintf(margin, sizeof margin, "%.3g", best.margins[i]);
-    sentences.push_back(m.name + (best.margins[i] < 0 ? " is violated" : " is active") + ", margin " + margin +
-                        (m.unit == "1" ? "" : " " + m.unit));
-  }
-  return sentences;
 }
 
 /// Certifies by interval arithmetic that a feasible design satisfies all pose-level limits along the motions that it
@@ -199,7 +177,7 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
   if (contents.best.row < 0) return f;
   const auto best = problem.parameters(contents.best_design());
   f.best = evaluate_design(problem, best);
-  f.active = active_sentences(problem, *f.best);
+  f.active = active_sentences(contents.problem, contents.best_design(), f.best->margins);
   if (study.round) {
     auto rounded = best;
     for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);

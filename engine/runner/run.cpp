@@ -204,7 +204,9 @@ void Run::update_best(const EvaluationTable& table, std::int64_t row) {
 }
 
 void Run::process_generation(const Generation& g) {
-  progress_.generation(progress_report(g));
+  const ProgressReport report = progress_report(g);
+  progress_.generation(report);
+  if (options_.observer && !replaying_) options_.observer(contents_, report);
   if (goes_on() && !replaying_ && clock_.due()) clock_.checkpoint([&] { write(StudyState::running); });
 }
 

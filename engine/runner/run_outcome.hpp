@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/core/error.hpp"
+#include "engine/runner/progress.hpp"
 #include "engine/runner/python_workers.hpp"
 #include "engine/runner/remaining_time.hpp"
 #include "engine/storage/study_contents.hpp"
@@ -33,6 +34,8 @@ struct RunOptions {
   /// Function that returns true to stop the run with a checkpoint. It is called often, by any thread of the team. An
   /// empty function never stops.
   std::function<bool()> stop = {};
+  /// Called after each new generation, on rank 0, with the study as far as it has been computed; may be empty.
+  std::function<void(const StudyContents&, const ProgressReport&)> observer = {};
   /// True if SIGINT, SIGTERM and SIGHUP request a stop. False if pkmopt is used as a library, which must not change the
   /// signal handling of the process.
   bool handles_signals = true;

@@ -14,7 +14,7 @@ namespace {
 /// What an option or an argument accepts: words, files, or both, or names of the robot on the command line.
 struct PossibleValues {
   std::vector<std::string> words;
-  std::string extension;   ///< extension of the files, for example "h5"; "*": any file; "": no files
+  std::string extension;   ///< extension of the files, for example "h5"; "*": files with any name; "": no files
   std::string names = {};  ///< option of `completion` that prints the names; "": none
 };
 

@@ -155,7 +155,7 @@ void report_solids(const std::vector<RequestedSolid>& requested, const Target& t
     json["volume"] = found.volume;
     json["unit"] = unit;
     rows.push_back({measure_name(finder->sweep().swept.size()), number(found.volume, unit)});
-    // "coordinate=value" for the centre; arguments of the option of `certify`, see `rows`
+    // centre: list of "coordinate=value"; places: arguments for the option of `pkmopt certify` that certifies the solid
     std::vector<std::string> centre, places;
     const SolidShape& shape = finder->spec().shape;
     for (std::size_t axis = 0; axis < shape.axes(); ++axis) {

@@ -43,7 +43,8 @@ struct Command {
   std::string_view name;
   AddCommand* add;
   bool prints_results = false;  ///< true if it prints computed values
-  bool evaluates = false;  ///< true if it evaluates many designs, so that the instruction set influences its run time
+  bool evaluates = false;  ///< true if the command evaluates many designs, so that the instruction set influences its
+                           ///< run time
 };
 
 constexpr Command kCommands[] = {{"run", add_run, true, true},

@@ -1,5 +1,7 @@
 // `pkmopt report`: writes the results of studies as one HTML page.
 
+#include "experiments/app/report.hpp"
+
 #include <filesystem>
 #include <iostream>
 
@@ -63,6 +65,20 @@ void report(const ReportArguments& arguments, const Session& session) {
 }
 
 }  // namespace
+
+std::string report_file_beside(const std::string& study_file) {
+  return std::filesystem::path(study_file).replace_extension(".html").string();
+}
+
+std::string write_report_beside(const std::string& study_file, int threads, const Session& session) {
+  page_assets();  // throws if this build does not contain the page
+  std::vector<PageStudy> studies;
+  studies.push_back(page_study(study_file, session));
+  std::string page;
+  with_team(threads, [&] { page = html_page(page_data(studies, program_words(), nullptr)); });
+  write_file(report_file_beside(study_file), page, Existing::replaced);
+  return report_file_beside(study_file);
+}
 
 void add_report(CLI::App& app, Session& session) {
   const auto [command, arguments] = add_command<ReportArguments>(

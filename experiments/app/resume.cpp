@@ -42,8 +42,12 @@ void resume(const ResumeArguments& arguments, Session& session) {
     if (!arguments.common.quiet) options.cost = measured_cost(study, session);
   }
   const auto progress = make_progress(arguments.common);
-  const RunEnd end =
-      execute_run([&] { return resume_study(locked, session.catalogues, extension, options, *progress); });
+  const RunEnd end = execute_run([&] {
+    return run_with_live_page(locked.contents, arguments.file, arguments.common, options, session,
+                              [&](const RunOptions& observed) {
+                                return resume_study(locked, session.catalogues, extension, observed, *progress);
+                              });
+  });
   progress->finish();
   const Study study = study_of(end.outcome.contents, session.catalogues);
   study.problem->parts().functions->caller = options.functions;

@@ -124,7 +124,19 @@ bool exists(const std::string& file) {
 
 RunOutcome run_one(const Study& study, const std::string& output, const RunArguments& arguments,
                    const RunOptions& options, Session& session, Progress& progress) {
-  if (!arguments.resume || !exists(output)) return run_study(study, output, arguments.force, options, progress);
+  check_outputs(live_files(output, arguments.common), input_files(study),
+                if_forced(arguments.force || arguments.resume));
+  const auto with_page = [&](const StudyContents& contents, const auto& execute) {
+    return run_with_live_page(contents, output, arguments.common, options, session, execute);
+  };
+  if (!arguments.resume || !exists(output)) {
+    if (!arguments.force && exists(output)) return run_study(study, output, false, options, progress);  // throws
+    StudyContents nothing;
+    nothing.name = study.name;
+    return with_page(nothing, [&](const RunOptions& observed) {
+      return run_study(study, output, arguments.force, observed, progress);
+    });
+  }
   LockedStudy locked(output);
   if (const Unsupported reason = refuse_different_study(locked.contents, study, session.catalogues))
     throw StorageError(output + " holds " + *reason + "; continue it with '" + session.program + " resume " +
@@ -133,7 +145,9 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
     study_to_continue(locked.contents, output, session.catalogues);
     return {.contents = std::move(locked.contents)};
   }
-  return resume_study(locked, session.catalogues, {}, options, progress);
+  return with_page(locked.contents, [&](const RunOptions& observed) {
+    return resume_study(locked, session.catalogues, {}, observed, progress);
+  });
 }
 
 void add_run(CLI::App& app, Session& session) {

@@ -10,8 +10,10 @@
 #include "engine/core/unit.hpp"
 #include "engine/results/comparison.hpp"
 #include "engine/runner/python_functions.hpp"
+#include "experiments/app/live_page.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
+#include "experiments/app/report.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/version.hpp"
 
@@ -52,6 +54,8 @@ void add_running_options(CLI::App& command, RunningArguments& arguments) {
   add_option(command, "--time T", arguments.time, "Stop with a checkpoint after this time, such as 90 or \"10 min\"");
   command.add_flag("-q,--quiet", arguments.quiet, "Print errors and warnings only");
   command.add_flag("--json", arguments.json, "Print the results as one JSON object, numbers in full precision");
+  command.add_flag("--live", arguments.live,
+                   "Write a page that shows the running study, F.live.html, and at the end the report, F.html");
 }
 
 int threads_of(const RunningArguments& arguments) {
@@ -66,6 +70,31 @@ RunOptions run_options(const RunningArguments& arguments, const Session& session
                      .program = {program_version(), program_revision(), session.arguments}};
   if (!arguments.time.empty()) options.time_limit = time_limit(arguments.time);
   return options;
+}
+
+std::vector<std::string> live_files(const std::string& file, const RunningArguments& arguments) {
+  if (!arguments.live) return {};
+  return {live_page_file(file), report_file_beside(file)};
+}
+
+RunOutcome run_with_live_page(const StudyContents& contents, const std::string& file, const RunningArguments& arguments,
+                              RunOptions options, const Session& session,
+                              const std::function<RunOutcome(const RunOptions&)>& run) {
+  if (!arguments.live || ranks::rank() != 0) return run(options);
+  LivePage page(live_page_file(file), file, contents);
+  if (!arguments.quiet) std::cerr << "live page: " << live_page_file(file) << '\n';
+  options.observer = [&page](const StudyContents& so_far, const ProgressReport& report) {
+    page.update(so_far, report);
+  };
+  RunOutcome outcome = run(options);
+  std::string report;
+  if (outcome.stopped.empty()) try {
+      report = write_report_beside(file, threads_of(arguments), session);
+    } catch (const std::exception& error) {  // the results are in the study file, from which the report can be written
+      std::cerr << session.program << ": warning: no report was written: " << error.what() << '\n';
+    }
+  page.finish(outcome.contents, outcome.stopped, report);
+  return outcome;
 }
 
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments) {
@@ -119,7 +148,7 @@ void print_run_end(const RunEnd& end, const Study& study, const std::string& fil
   }
   if (!arguments.quiet || end.write_error) std::cout << summary_text(outcome.contents, study, diagnosis);
   if (!outcome.stopped.empty()) {
-    // This is printed even with --quiet, because the results are not final.
+    // The following lines are printed even with --quiet, because the results are not final.
     std::cout << "stopped by " << stop_words(outcome.stopped) << ", after " << outcome.contents.evaluations()
               << " evaluations";
     if (!end.write_error) std::cout << "; resume with: " << command_text(session, {"resume", file_argument(file)});

@@ -15,7 +15,7 @@ namespace pkm {
 struct RunningArguments {
   int threads = 0, workers = 0;
   std::string time;
-  bool quiet = false, json = false;
+  bool quiet = false, json = false, live = false;
 };
 
 /// Declares --threads.
@@ -25,7 +25,7 @@ void add_workers(CLI::App& command, int& workers);
 /// Starts the worker processes for the Python functions of a study, if it calls any.
 /// @param file  the TOML file or study file, in whose folder the Python functions are
 void start_python(const Study& study, const std::string& file, int workers, int threads);
-/// Declares --threads, --workers, --time, --quiet and --json.
+/// Declares --threads, --workers, --time, --quiet, --json and --live.
 void add_running_options(CLI::App& command, RunningArguments& arguments);
 
 /// Number of threads that this MPI rank uses.
@@ -35,6 +35,16 @@ RunCost measured_cost(const Study& study, const Session& session);
 
 /// Converts the arguments of the command to run options. Prints a warning if there are more threads than cores.
 RunOptions run_options(const RunningArguments& arguments, const Session& session);
+/// Executes a run with a live page (experiments/app/live_page.hpp) if --live is given: calls `run` with `options` whose
+/// observer updates the page; afterwards writes the report beside the study file and the final state of the page. If
+/// `run` throws, the page keeps its last state.
+/// @param contents  the study before this run; `run` may move it
+/// @param file      the study file
+RunOutcome run_with_live_page(const StudyContents& contents, const std::string& file, const RunningArguments& arguments,
+                              RunOptions options, const Session& session,
+                              const std::function<RunOutcome(const RunOptions&)>& run);
+/// The files that --live writes for a study file: the page and the report. None without --live.
+std::vector<std::string> live_files(const std::string& file, const RunningArguments& arguments);
 /// The progress display on stderr: a bar on a terminal, lines elsewhere, nothing with --quiet.
 std::unique_ptr<Progress> make_progress(const RunningArguments& arguments);
 
