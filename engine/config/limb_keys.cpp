@@ -132,6 +132,44 @@ OptionSpec slider_section_key() {
                    "cross-section and material of the slider of a limb with a `rod`, a cantilever");
 }
 
+/// Keys of limbs that are chains of joints, in addition to those of all limbs with closed forms.
+Keys chain_keys() {
+  static const TableSpec ranges = {.meaning = "ranges of passive joints",
+                                   .keys = {},
+                                   .named = {formulas_key("", kUnitOfEntry, 2, "range [minimum, maximum]")},
+                                   .noun = "joint"};
+  Keys keys = geometry_keys();
+  std::erase_if(keys, [](const OptionSpec& key) {
+    return key.name == "across" || key.name == "across_in" || key.name == "universal";
+  });
+  const Keys own = {
+      {.name = "chain",
+       .kind = OptionKind::list,
+       .required = true,
+       .meaning = "joints from the base to the platform: P, R, U, S",
+       .parts = {{.kind = OptionKind::word, .choices = {"P", "R", "U", "S"}}}},
+      {.name = "axes",
+       .kind = OptionKind::list,
+       .meaning = "directions of the axes of its joints, in their order",
+       .parts = {direction_key("", "direction")}},
+      formulas_key("links", "m", 0, "lengths of the links between the joints"),
+      formulas_key("angles", "rad", 2, "angles [alpha_1, alpha_2] of the links of a spherical chain"),
+      direction_key("zero", "direction at which the first revolute joint has the value 0"),
+      {.name = "driven",
+       .kind = OptionKind::integer,
+       .lower = 1,
+       .upper = 4,
+       .meaning = "number of the driven joint; default: 1, or 2 for a chain with a leg of variable length"},
+      table_key("joint_ranges", ranges, "ranges of passive joints: { q2 = [minimum, maximum] }"),
+      formula_key("arc_radius", "m", "radius of the arcs of a spherical chain"),
+      branch_key(),
+      pair_key()};
+  keys.insert(keys.end(), own.begin(), own.end());
+  for (const char* const part : {"cylinder", "piston", "crank", "slider", "rod", "first_link", "second_link"})
+    for (const OptionSpec& key : mass_keys(part)) keys.push_back(key);
+  return keys;
+}
+
 Keys all(std::initializer_list<Keys> lists) {
   Keys keys;
   for (const Keys& list : lists) keys.insert(keys.end(), list.begin(), list.end());
@@ -184,6 +222,7 @@ std::vector<TableVariant> drives() {
                 slider,
                 {slider_section_key()}})},
           {"crank", "crank with a rod", all({geometry_keys(), mass_keys("crank"), mass_keys("rod"), crank})},
+          {"chain", "chain of three joints", all({chain_keys(), {leg_section_key(), slider_section_key()}})},
           {"formula", "joints given by formulas", formulas}};
 }
 
@@ -227,7 +266,7 @@ const TableSpec& limb_keys() {
                {.name = "drive",
                 .kind = OptionKind::word,
                 .required = true,
-                .choices = {"telescope", "slider", "crank", "formula"},
+                .choices = {"telescope", "slider", "crank", "chain", "formula"},
                 .meaning = "kind of the actuated joint"},
                formulas_key("range", kUnitOfEntry, 2, "range [minimum, maximum] of the joint"),
                formula_key("drive_stiffness", kUnitOfEntry,

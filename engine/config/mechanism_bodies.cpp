@@ -142,6 +142,25 @@ BodyNodes thin_body(const LimbPart& part, const Term& mass, const Term& inertia,
   return body;
 }
 
+/// A thin link of uniform mass along an arc of the angle a, about whose centre it rotates. With the ends u and w as
+/// unit vectors, its middle is c = (u + w) / (2 cos(a/2)), and t = (w - u) / (2 sin(a/2)) is normal to c. The mean
+/// squares of the mass along c and t are r^2 (1 + sin(a)/a)/2 and r^2 (1 - sin(a)/a)/2.
+BodyNodes arc_body(const LimbPart& part, const Term& mass, const std::string& name) {
+  const LimbPart::Arc& arc = *part.arc;
+  const Term half = arc.angle * 0.5, slope = sin(arc.angle) / arc.angle, one(mass.graph(), 1.0);
+  const Vector3 c = (arc.first + arc.last) / (cos(half) * 2.0), t = (arc.last - arc.first) / (sin(half) * 2.0);
+  const Vector3 n = cross(c, t);
+  const Term square = mass * arc.radius * arc.radius, along = (one + slope) * 0.5, across = (one - slope) * 0.5;
+  const Term distance = sin(half) / half;  // of the centre of mass from the centre of the arc, divided by the radius
+  BodyNodes body{name, mass.node(), nodes(arc.centre + c * (arc.radius * distance)), {}, {}, {}};
+  add_square(nodes(c), square * along, body);
+  add_square(nodes(t), square * across, body);
+  const Term offset = distance * distance;
+  body.inertia = {(square * across).node(), (square * (along - offset)).node(), (square * (one - offset)).node()};
+  body.axes = {nodes(Vector3{c[0], t[0], n[0]}), nodes(Vector3{c[1], t[1], n[1]}), nodes(Vector3{c[2], t[2], n[2]})};
+  return body;
+}
+
 /// One of the two bodies of a telescopic leg, with its centre of mass on the line from A to B, whose direction is
 /// `part.line`.
 BodyNodes telescopic_body(const LimbPart& part, const Term& mass, const Term& along, const Term& inertia,
@@ -174,6 +193,10 @@ void add_part_body(const ConfigValue& table, const std::string& limb, const Limb
                                 : draft.zero();
   if (const auto own = find_mass_key(table, part.name, "_inertia"))
     inertia = draft.scope.positive(*own, "kg m^2", what, true);
+  if (part.arc) {
+    draft.model.bodies.push_back(arc_body(part, mass, what));
+    return;
+  }
   checked(draft, inertia, "the inertia of " + what, "kg m^2", true);
   const expression::Node none = draft.zero().node(), across = inertia.node();
   if (part.length) {

@@ -6,6 +6,7 @@
 // the expression graph of a model; they do not depend on TOML.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -72,6 +73,12 @@ struct LimbPart {
     bool is_arm;
   };
   std::optional<OnArm> on_arm = {};
+  /// A link that is an arc of a circle, between two joints whose axes intersect in its centre.
+  struct Arc {
+    limbs::Vector3 centre, first, last;  ///< unit vectors from the centre to the two ends
+    limbs::Term radius, angle;
+  };
+  std::optional<Arc> arc = {};
 };
 
 /// A limb that has been read, under the name by which other tables refer to it.
@@ -112,6 +119,11 @@ struct NamedLimb {
   std::optional<limbs::Term> slider_length = {};
   /// Axes of the universal joints at the base's and the platform's end of the rod or leg, fixed to the bodies there.
   std::optional<std::array<limbs::Vector3, 2>> universal = {};
+
+  /// For a spherical chain of three revolute joints: unit vectors along their axes.
+  std::optional<std::array<limbs::Vector3, 3>> axes = {};
+  /// Index in the chain of the driven joint, if it is not the one that `drive` describes.
+  std::optional<std::size_t> driven = {};
 };
 
 /// A limb whose table has the key `across`, a vector `normal` to the plane in which the limb moves. The component of
@@ -160,6 +172,8 @@ struct MechanismDraft {
   /// The table of the selected mass model in [masses]; std::nullopt: there is no [masses].
   std::optional<ConfigValue> masses;
   std::vector<ConfigValue> let;  ///< the tables [let] of the file and of the selected mass model
+  /// Tables of limbs with `chain`, rewritten with the keys of another drive; ConfigValue refers to them.
+  std::deque<TomlValue> rewritten;
 
   limbs::Term zero() { return {model.graph, 0.0}; }
   /// Adds a sign, by which the working modes differ, to the inputs of the graph.
@@ -234,6 +248,8 @@ void read_tension(const ConfigValue& table, NamedLimb& limb, MechanismDraft& dra
 /// margin and the quantities of the cables (engine/generic/performance/tension_limits.hpp).
 /// @param study  null if there is none
 void add_forces(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
+/// Adds the quantity `constraint_singular_value`, if the constraint wrenches of all limbs are known.
+void add_constraint_quantity(const ConfigValue& root, const ConfigValue* study, MechanismDraft& draft);
 /// Reads the elastic moduli of a limb's cross-sections, and the play of its joints.
 void read_elasticity(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft);
 /// Compliance of the limb's end along the line of its rod or leg, due to rods, crank and slider [m/N].

@@ -236,6 +236,7 @@ void read_draft(const std::string& text, const std::string& file_name, const std
   if (!draft.model.bodies.empty()) draft.model.equations = generic::equations_of(draft.model);
   add_transmission(root, study.get(), draft);
   add_performance(root, study.get(), draft);
+  add_constraint_quantity(root, study.get(), draft);
   add_forces(root, study.get(), draft);
   read_quantities(root, study.get(), draft);
   read_margins(root, draft);

@@ -13,6 +13,7 @@
 //   a leg                 in addition a prismatic joint at its middle: all forces and couples; the drive exerts the
 //                         force along it
 //   a slider on its rail  not a body: the drive force includes the force that accelerates the mass of the slider
+//   a spherical chain     revolute joints whose axes intersect in the centre of the arcs
 //   [[joint]]             a revolute joint of two bodies, or a driven prismatic or revolute joint
 
 #include <algorithm>
@@ -54,6 +55,11 @@ class JointReader {
     refuse_unknown_links();
     hold_pin();
     return {solids_, joints_};
+  }
+  /// Why forces in the joints cannot be computed although the joints are known; "" if they can.
+  std::string why_no_forces() const {
+    if (passive_slide_.empty()) return "";
+    return "limb " + passive_slide_ + " has a passive slide, whose reactions are not computed";
   }
   /// Assigns the masses, which are required for the forces in the joints.
   generic::JointedBodies with_masses() {
@@ -172,7 +178,8 @@ class JointReader {
   }
 
   void add_limb(const NamedLimb& limb) {
-    if (limb.drive == "formula") return;  // the joints of this limb are described by [[joint]] tables instead
+    if (limb.drive == "formula") return;  // described by [[joint]] instead
+    if (limb.axes) return add_spherical(limb);
     if (limb.parts.size() == 1)
       throw IncompleteDescription{"limb " + limb.name +
                                   " has neither `rod` nor `links` that connect it to the platform"};
@@ -194,6 +201,9 @@ class JointReader {
     const LimbPart &first = limb.parts[limb.parts.size() - 2], &last = limb.parts.back();
     const std::vector<Vector3> turns = turns_of(limb);
 
+    // A driven revolute joint of a chain with a slide: for the mobility, in which all drives are free, the slide may be
+    // the drive.
+    if (limb.driven && limb.drive != "crank" && passive_slide_.empty()) passive_slide_ = limb.name;
     const bool telescope = limb.drive == "telescope", slides = limb.drive == "slider",
                has_links = first.name != "slider" && slides;
     JointNodes::Drive drive{limb.joint, nodes(telescope ? *last.line : *limb.axis), limb.drive == "crank"};
@@ -219,11 +229,12 @@ class JointReader {
       return;
     }
     if (limb.drive == "crank") {
-      joints_.push_back(rigid_joint(limb.name + ".A", A, *inner, base));
+      joints_.push_back(limb.driven ? limb_joint(limb, limb.name + ".A", A, *inner, base, {})
+                                    : rigid_joint(limb.name + ".A", A, *inner, base));
       if (const auto& section = limb.crank_section) solids_[*inner].beam = held_beam(*section, A, C, false);
     }
     if (has_links) joints_.push_back(limb_joint(limb, limb.name + ".S", S, *inner, {}, {}));
-    if (inner) joints_.back().drive = drive;
+    if (inner && !(limb.driven && limb.drive == "crank")) joints_.back().drive = drive;
     const int rods = limb.beside ? 2 : 1;
     for (int rod = 1; rod <= rods; ++rod) {
       const std::string number = rods == 2 ? " " + std::to_string(rod) : "";
@@ -239,6 +250,7 @@ class JointReader {
       }
       if (inner) {
         joints_.push_back(limb_joint(limb, limb.name + ".C" + number, near, *inner, outer, last.line));
+        if (limb.driven == 1 && limb.drive == "crank") drive_last(drive);
       } else {
         joints_.push_back(limb_joint(limb, limb.name + ".S" + number, near, outer, {}, last.line));
         joints_.back().drive = drive;
@@ -247,7 +259,48 @@ class JointReader {
       make_universal(limb, far - near, outer, false);
       if (const auto& section = limb.rod_section) solids_[outer].beam = held_beam(*section, near, far, true);
       joints_.push_back(limb_joint(limb, limb.name + ".B" + number, far, outer, carrier, {}, turns));
+      if (limb.driven == 2 && limb.drive == "crank") drive_last(drive);
       make_universal(limb, far - near, outer, true);
+    }
+  }
+  /// Makes the revolute joint added last the drive. Its coordinate is the angle of the joint's second body relative to
+  /// the first.
+  void drive_last(JointNodes::Drive drive) {
+    drive.axis = nodes(vector(drive.axis) * Term(model_.graph, -1.0));
+    joints_.back().axes.clear();
+    joints_.back().drive = drive;
+  }
+
+  /// Adds a spherical chain. Its links rotate with the frames of their arcs.
+  void add_spherical(const NamedLimb& limb) {
+    const std::array<const char*, 3> points = {"A", "C", "B"};
+    std::optional<std::size_t> before = limb.begin_on == kBaseFrame ? std::nullopt : find_solid(limb.begin_on);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3 &axis = (*limb.axes)[k], &point = limb.points.at(points[k]);
+      std::size_t next = 0;
+      if (k < 2) {
+        const LimbPart& part = limb.parts[k];
+        const std::string name = part.name + " of " + limb.name;
+        const LimbPart::Arc& arc = *part.arc;
+        const Vector3 n = cross(arc.first, arc.last) / sin(arc.angle), t = cross(n, arc.first);
+        next = add_solid(name, {.name = name,
+                                .point = nodes(point),
+                                .rotation = std::array<Nodes, 3>{nodes(Vector3{arc.first[0], t[0], n[0]}),
+                                                                 nodes(Vector3{arc.first[1], t[1], n[1]}),
+                                                                 nodes(Vector3{arc.first[2], t[2], n[2]})}});
+      } else {
+        next = *find_solid(limb.end_on);
+      }
+      const std::string name = limb.name + "." + points[k];
+      if (k == limb.driven) {
+        joints_.push_back(rigid_joint(name, point, next, before));
+        joints_.back().drive = JointNodes::Drive{limb.joint, nodes(axis), true};
+        if (const auto compliance = drive_compliance(limb, draft_))
+          joints_.back().drive->compliance = compliance->node();
+      } else {
+        joints_.push_back(joint(name, point, next, before, JointNodes::Couples::all_but_about, {axis}));
+      }
+      before = next;
     }
   }
 
@@ -378,6 +431,7 @@ class JointReader {
   std::vector<JointNodes> joints_;
   /// For each body of the model, by its name, the indices of the solids that have its mass.
   std::map<std::string, std::vector<std::size_t>> made_of_;
+  std::string passive_slide_;  ///< name of a limb whose slide is not driven; "": none
 };
 
 }  // namespace
@@ -388,6 +442,10 @@ void add_joints(const ConfigValue& root, MechanismDraft& draft) {
   JointReader reader(draft);
   try {
     model.jointed = reader.read(tables);
+    if (const std::string why = reader.why_no_forces(); !why.empty()) {
+      model.why_no_reactions = model.why_no_elasticity = why;
+      return;
+    }
     const bool has_beam =
         std::ranges::any_of(model.jointed->solids, [](const SolidNodes& solid) { return solid.beam.has_value(); });
     const bool has_spring = std::ranges::any_of(model.jointed->joints, [](const JointNodes& joint) {

@@ -11,7 +11,9 @@
 
 namespace pkm {
 
-/// One of the copies of a limb that the key `copies` of a [[limb]] defines; without this key, the limb itself.
+struct Chain;
+
+/// One of the copies that a [[limb]] describes; if it has no key `copies`, the limb itself.
 struct LimbCopy {
   const ConfigValue& table;
   MechanismDraft& draft;
@@ -19,9 +21,9 @@ struct LimbCopy {
   std::string group;                  ///< name of the [[limb]] in the file, for example "arm"
   std::string name;                   ///< name of this copy, for example "arm2"
   limbs::Rotation turn;               ///< rotation that maps the geometry in the file to this copy
-  const NamedFrame &base, &platform;  ///< frames to which the two ends of the limb are attached
-  ConfigValue ends;  ///< table that contains the limb's keys `base` and `platform`: the table of the limb, or an
-                     ///< element of `copies`
+  const NamedFrame &base, &platform;  ///< the frames of the limb's ends
+  ConfigValue ends;  ///< table that contains its `base` and `platform`: that of the limb, or one of `copies`
+  const Chain* chain = nullptr;  ///< the chain from which `table` was rewritten, or that is spherical; null: none
 
   limbs::Term length(const char* key, const char* expected) const;
   /// Reads a direction and rotates it with the copy.
@@ -43,8 +45,13 @@ struct DrivenLimb : limbs::Limb {
   /// Maximum distance of B from A or from the line on which the slider moves; std::nullopt if lengths of parts do
   /// not limit it.
   std::optional<limbs::Term> max_distance{};
+  /// Coordinate of another joint of the limb's chain, which is driven instead; std::nullopt: `joint` is driven.
+  std::optional<limbs::Term> driven{};
 };
 
+/// The branch sign (+1 or -1), which selects one of two solutions of the inverse kinematics, as an input of the graph.
+/// Formulas of quantities and margins refer to it by a name such as "arm1_branch".
+limbs::Term limb_branch(const LimbCopy& copy);
 /// Reads the drive of a limb, and computes the limb's closed form.
 /// @param q  joint coordinate as a variable of the loop-closure equation
 DrivenLimb read_drive(const LimbCopy& copy, const limbs::Ends& at, const limbs::Term& q);

@@ -11,17 +11,6 @@ namespace {
 
 using limbs::Ends, limbs::Term, limbs::Vector3;
 
-/// The branch sign (+1 or -1), which selects one of two solutions of the inverse kinematics, as an input of the graph.
-/// Formulas of quantities and margins refer to it by a name such as "arm1_branch".
-Term branch(const LimbCopy& copy) {
-  const ConfigValue value = copy.table.at("branch", "\"+\" or \"-\"");
-  const Term sign = copy.draft.add_sign(value.word()[0], true);
-  const std::string name = copy.name + "_branch";
-  if (expression::may_be_name(name) && !copy.draft.scope.knows(name))
-    copy.draft.scope.add(copy.table, name, sign.node());
-  return sign;
-}
-
 void refuse_oblique(const LimbCopy& copy, const Vector3& a, const Vector3& b, const char* key, const char* other) {
   if (std::fabs(copy.draft.scope.at_default(dot(a, b))) > 1e-9)
     throw copy.table.find(key)->refusal(std::string("`") + key + "` has to be normal to " + other);
@@ -33,8 +22,8 @@ DrivenLimb slider_and_links(const LimbCopy& copy, const Ends& at, const Vector3&
   const auto given = copy.table.find("axis");
   const Vector3 axis = given ? copy.direction(*given) : e;
   const Term max_distance = l_1 + l_2;
-  return {limbs::slider_and_links(at, e, axis, l_1, l_2, branch(copy), q), "q = (B - A) . e, two links across e", e,
-          max_distance};
+  return {limbs::slider_and_links(at, e, axis, l_1, l_2, limb_branch(copy), q), "q = (B - A) . e, two links across e",
+          e, max_distance};
 }
 
 DrivenLimb slider(const LimbCopy& copy, const Ends& at, const Term& q) {
@@ -57,7 +46,7 @@ DrivenLimb slider(const LimbCopy& copy, const Ends& at, const Term& q) {
     return {limbs::slider(at, e, q), "q = (B - A) . e", e};
   }
   const Term rod = copy.length("rod", "the rod's length");
-  return {limbs::slider_and_rod(at, e, rod, branch(copy), q),
+  return {limbs::slider_and_rod(at, e, rod, limb_branch(copy), q),
           "q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), s = v . e, v = B - A", e, rod};
 }
 
@@ -74,12 +63,21 @@ DrivenLimb crank(const LimbCopy& copy, const Ends& at, const Term& q) {
   std::optional<std::array<Term, 2>> ends;
   if (table.has("range")) ends = copy.range("rad");
   const Term max_distance = crank + rod;
-  return {limbs::crank_and_rod(at, axis, zero, crank, rod, branch(copy), ends, q),
+  return {limbs::crank_and_rod(at, axis, zero, crank, rod, limb_branch(copy), ends, q),
           "q = atan2(w, u) + branch acos(k / hypot(u, w)), k = (|v|^2 + crank^2 - rod^2) / (2 crank)", axis,
           max_distance};
 }
 
 }  // namespace
+
+Term limb_branch(const LimbCopy& copy) {
+  const ConfigValue value = copy.table.at("branch", "\"+\" or \"-\"");
+  const Term sign = copy.draft.add_sign(value.word()[0], true);
+  const std::string name = copy.name + "_branch";
+  if (expression::may_be_name(name) && !copy.draft.scope.knows(name))
+    copy.draft.scope.add(copy.table, name, sign.node());
+  return sign;
+}
 
 DrivenLimb read_drive(const LimbCopy& copy, const Ends& at, const Term& q) {
   if (copy.drive == "slider") return slider(copy, at, q);

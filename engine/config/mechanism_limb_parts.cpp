@@ -7,6 +7,11 @@ namespace pkm {
 using limbs::Ends, limbs::Term, limbs::Vector3;
 
 std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::string& drive) {
+  if (drive == "chain") {
+    if (table.has("angles")) return {"first_link", "second_link"};
+    return {"cylinder",   "piston",      "crank", "slider",
+            "first_link", "second_link", "rod"};  // those of all drives, for which chains are rewritten
+  }
   if (drive == "telescope") return {"cylinder", "piston"};
   if (drive == "crank") return {"crank", "rod"};
   if (table.has("links")) return {"slider", "first_link", "second_link"};

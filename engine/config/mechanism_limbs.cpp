@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/config/mechanism_chains.hpp"
 #include "engine/config/mechanism_keys.hpp"
 #include "engine/config/mechanism_limb.hpp"
 #include "engine/config/tables.hpp"
@@ -198,6 +199,7 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
                  .revolute = table.has("links") ? driven.e : at.across,
                  .has_rod = copy.drive != "slider" || table.has("rod"),
                  .has_links = table.has("links")};
+  if (copy.chain && copy.chain->driven != copy.chain->usual) limb.driven = copy.chain->driven;
   const auto end_on = table.find("end_on");
   if (end_on && !table.has("end"))
     throw end_on->refusal("`end_on` requires `end`; a limb that ends at `platform` is attached to the platform");
@@ -249,20 +251,21 @@ void add_limb(const LimbCopy& copy, const std::string& joint, const limbs::Ends&
                              copy.name + " cannot reach the pose"});
     draft.scope.mark_as_defined(constraint.margin.node());
   }
-  draft.scope.mark_as_defined(limb.joint.node());
+  const Term q = limb.driven.value_or(limb.joint);
+  draft.scope.mark_as_defined(q.node());
   draft.scope.mark_as_defined(limb.C[0].node());
-  draft.scope.add(copy.table, joint, limb.joint.node());
-  model.joints.push_back(limb.joint.node());
+  draft.scope.add(copy.table, joint, q.node());
+  model.joints.push_back(q.node());
   model.closures.push_back(limb.closure.node());
   model.info.closed_forms.push_back(copy.drive + ": " + limb.form);
-  add_range(copy.table, copy.group, joint, model.info.joints.back().unit, limb.joint, draft);
+  add_range(copy.chain ? copy.chain->table : copy.table, copy.group, joint, model.info.joints.back().unit, q, draft);
   add_equivalent_constraints(limb, copy.table.has("range"), model);
   if ((copy.drive != "slider" || copy.table.has("rod")) && !copy.moves())
     model.rods.push_back({nodes(limb.C), nodes(at.B)});
   add_passive_joint(copy, "joint_base", " base angle", limb.C, at.B);
   add_passive_joint(copy, "joint_platform", " platform angle", at.B, limb.C);
   draft.limbs.push_back(named(copy, at, limb));
-  for (const auto& [point, place] : draft.limbs.back().points) draft.scope.add_point(copy.name + "." + point, place);
+  for (const auto& [point, place] : draft.limbs.back().points) draft.scope.add_member(copy.name + "." + point, place);
   read_tension(copy.table, draft.limbs.back(), draft);
   read_elasticity(copy.table, draft.limbs.back(), draft);
   for (const LimbPart& part : draft.limbs.back().parts) add_part_body(copy.table, copy.name, part, draft);
@@ -279,19 +282,30 @@ void read_copy(const LimbCopy& copy, const std::string& number) {
                              copy.base.name + " and " + copy.platform.name);
   const auto given = copy.table.find("joint_name");
   const std::string joint = given ? given->text("the joint's name") + number : copy.name;
+  if (copy.drive == "chain") return read_spherical_limb(copy, joint);
   const limbs::Ends at = read_ends(copy);
-  const Term q = add_joint_variable(copy.table, joint, copy.drive == "crank" ? "rad" : "m", copy.draft);
-  add_limb(copy, joint, at, read_drive(copy, at, q));
+  const char* const unit = copy.chain ? copy.chain->unit(copy.chain->driven) : copy.drive == "crank" ? "rad" : "m";
+  const Term q = add_joint_variable(copy.table, joint, unit, copy.draft);
+  DrivenLimb driven = read_drive(copy, at, q);
+  const ChainJoints joints = copy.chain ? find_chain_joints(copy, at, q, driven) : ChainJoints();
+  add_limb(copy, joint, at, driven);
+  if (copy.chain) name_chain_joints(copy, joints);
 }
 
 void read_limb(const ConfigValue& value, MechanismDraft& draft) {
-  const ConfigValue table = limb_table(value);
+  ConfigValue table = limb_table(value);
   const std::string name = table.at("name", "the limb's name").text("the limb's name");
-  const std::string drive = table.at("drive").word();
+  std::string drive = table.at("drive").word();
   refuse_known(table, name, draft);
   if (drive == "formula")
     return read_as_limb(
         name, [&] { read_formula_limb(table, name, draft); }, draft);
+  std::optional<Chain> chain;
+  if (drive == "chain") {
+    chain = read_chain(table);
+    drive = chain->drive;
+    if (!chain->is_spherical()) table = rewritten(*chain, draft);
+  }
   const std::vector<Rotation> turns = turns_of(table, draft);
   const std::vector<ConfigValue> ends = ends_of(table);
   const std::size_t copies = ends.size() * turns.size();
@@ -299,9 +313,16 @@ void read_limb(const ConfigValue& value, MechanismDraft& draft) {
              platform = frames_of(table, "platform_in", kPlatformFrame, copies, draft);
   for (std::size_t i = 0; i < copies; ++i) {
     const std::string number = table.has("copies") ? std::to_string(i + 1) : "";
-    const LimbCopy copy{table,    draft,         drive,
-                        name,     name + number, turns[i % turns.size()],
-                        *base[i], *platform[i],  ends[i / turns.size()]};
+    const LimbCopy copy{table,
+                        draft,
+                        drive,
+                        name,
+                        name + number,
+                        turns[i % turns.size()],
+                        *base[i],
+                        *platform[i],
+                        ends[i / turns.size()],
+                        chain ? &*chain : nullptr};
     read_as_limb(
         copy.name, [&] { read_copy(copy, number); }, draft);
   }

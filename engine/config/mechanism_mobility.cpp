@@ -35,7 +35,9 @@ std::string mobility_text(const Mechanism& mechanism, std::span<const double> pa
   const std::size_t assumed = found.of_joints - described;
   if (assumed == 0) return determined(coordinates);
   return determined(coordinates + assumed) + (loose.empty() ? ": " : "; ") + "the joints of the file do not prevent " +
-         (found.assumed.empty() ? std::to_string(assumed) + " other motions" : join(found.assumed)) +
+         (!found.assumed.empty() ? join(found.assumed)
+          : assumed == 1         ? "1 other motion"
+                                 : std::to_string(assumed) + " other motions") +
          ", which is assumed to be impossible";
 }
 

@@ -60,10 +60,10 @@ void MechanismScope::resolve(const ConfigValue& root) {
   while (!deferred_.empty()) value_of(deferred_.begin()->first, root);
 }
 
-void MechanismScope::add_point(const std::string& name, const Vector3& point) {
+void MechanismScope::add_member(const std::string& name, const Value& value) {
   names_.add(name);
   origins_.emplace_back();
-  values_.emplace_back(point);
+  values_.push_back(value);
 }
 
 void MechanismScope::replace(const std::string& name, const Value& value) {

@@ -34,8 +34,8 @@ class MechanismScope {
   /// The value of a name. @param user  the value that refers to it; refused if the name depends on itself
   const Value& value(const std::string& name, const ConfigValue& user) { return value_of(*names_.find(name), user); }
   void resolve(const ConfigValue& root);
-  /// Adds the name of a point of a limb, "arm1.C".
-  void add_point(const std::string& name, const limbs::Vector3& point);
+  /// Adds the name of a point or joint of a limb, "arm1.C".
+  void add_member(const std::string& name, const Value& value);
   /// Assigns another value to a name, for example a threshold in place of a parameter.
   void replace(const std::string& name, const Value& value);
   void replace(const std::string& name, expression::Node node) { replace(name, model_.term(node)); }

@@ -63,7 +63,7 @@ std::string why_no_transmission(const ConfigValue& root, const ConfigValue* stud
   const std::size_t coordinates = draft.model.inputs.coordinates;
   if (coordinates > kMaxCoordinates) return "there are more than six coordinates";
   for (const NamedLimb& limb : draft.limbs)
-    if (limb.drive == "formula" || limb.has_links)
+    if (limb.drive == "formula" || limb.has_links || limb.driven)
       return "limb " + limb.name + " does not act on the platform by a single force along a rod, telescope or slide";
   for (const NamedLimb& limb : draft.limbs)
     if (limb.begin_on != kBaseFrame)
@@ -77,7 +77,7 @@ std::string why_no_transmission(const ConfigValue& root, const ConfigValue* stud
 }  // namespace
 
 std::optional<LimbForce> force_of(const NamedLimb& limb) {
-  if (limb.drive == "formula" || limb.has_links) return {};
+  if (limb.drive == "formula" || limb.has_links || limb.driven) return {};
   return single_force_of(limb);
 }
 

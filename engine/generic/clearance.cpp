@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "engine/core/catalogue.hpp"
+
 namespace pkm::generic {
 namespace {
 
@@ -135,9 +137,13 @@ std::vector<JoinedLinks> joined_links(const Model& model) {
   for (const auto& [first, second] : model.link_pairs)
     is_pair[first * count + second] = is_pair[second * count + first] = true;
   for (std::size_t i = 0; i < count; ++i) {
-    all.push_back({model.links[i].name, {}});
-    for (std::size_t k = 0; k < count; ++k)
-      if (k != i && !is_pair[i * count + k]) all.back().others.push_back(model.links[k].name);
+    const std::string& name = model.links[i].name;  // the segments of an arc share their name
+    auto entry = std::ranges::find(all, name, &JoinedLinks::link);
+    if (entry == all.end()) entry = all.insert(entry, {name, {}});
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::string& other = model.links[k].name;
+      if (other != name && !is_pair[i * count + k] && !contains(entry->others, other)) entry->others.push_back(other);
+    }
   }
   return all;
 }

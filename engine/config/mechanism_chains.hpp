@@ -1,0 +1,49 @@
+// Limbs that are given as a chain of joints, [[limb]] chain = ["P", "R", "S"].
+//
+// A chain whose inverse kinematics is that of a slider, a crank or a telescope is rewritten as a limb with this drive;
+// the coordinates of its other joints follow from the points of the limb, and one of these joints may be driven
+// instead. A spherical chain has its own closed form (engine/generic/limbs/spherical.hpp).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/config/mechanism_limb.hpp"
+
+namespace pkm {
+
+/// A chain as its table describes it.
+struct Chain {
+  ConfigValue table;   ///< the table of the limb in the file
+  std::string joints;  ///< letters of the joints, from the base to the platform: "PRS"
+  std::string drive;   ///< the drive with the same inverse kinematics, for example "slider"; "chain": spherical
+  std::size_t driven;  ///< index of the driven joint
+  std::size_t usual;   ///< index of the joint that `drive` drives
+
+  bool is_spherical() const { return drive == "chain"; }
+  const char* unit(std::size_t joint) const { return joints[joint] == 'P' ? "m" : "rad"; }
+};
+
+/// An angle in the revolution about `centre`.
+limbs::Term wrapped(const limbs::Term& angle, const limbs::Term& centre);
+/// Reads the keys `chain` and `driven`. Refuses chains without a closed form.
+Chain read_chain(const ConfigValue& table);
+/// The table of a chain, unless it is spherical, as that of a limb with another drive.
+ConfigValue rewritten(const Chain& chain, MechanismDraft& draft);
+
+/// Coordinates of the joints of a chain by their index, for the joints whose coordinates are defined.
+using ChainJoints = std::map<std::size_t, limbs::Term>;
+/// Coordinates of the joints of a chain that was rewritten. If the driven joint is not the one that the drive
+/// describes, it becomes the joint of the limb.
+/// @param limb  the closed form for the drive
+/// @param q     coordinate of the driven joint as a variable of the loop-closure equation
+ChainJoints find_chain_joints(const LimbCopy& copy, const limbs::Ends& at, const limbs::Term& q, DrivenLimb& limb);
+/// Adds the names and ranges of the joints of a chain: "arm1.q2".
+void name_chain_joints(const LimbCopy& copy, const ChainJoints& joints);
+
+/// Adds a copy of a limb that is a spherical chain. @param joint  name of its driven joint
+void read_spherical_limb(const LimbCopy& copy, const std::string& joint);
+
+}  // namespace pkm
