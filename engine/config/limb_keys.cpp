@@ -222,7 +222,7 @@ std::vector<TableVariant> drives() {
                 slider,
                 {slider_section_key()}})},
           {"crank", "crank with a rod", all({geometry_keys(), mass_keys("crank"), mass_keys("rod"), crank})},
-          {"chain", "chain of three joints", all({chain_keys(), {leg_section_key(), slider_section_key()}})},
+          {"chain", "chain of joints", all({chain_keys(), {leg_section_key(), slider_section_key()}})},
           {"formula", "joints given by formulas", formulas}};
 }
 

@@ -108,6 +108,7 @@ class ConstraintSystem {
   void add_parallel_revolutes(const NamedLimb& limb, const Vector3& B) {
     const Vector3 n = unit_vector(*limb.revolute);
     if (!limb.has_links) add({n, moment_of(n, B)});
+    if (limb.ends_in_ball) return;
     std::vector<Vector3> free = {n};
     for (const Vector3& turn : *platform_.turns)
       if (free.size() == 1 ? !are_dependent(cross(n, turn)) : !are_dependent(turn, free)) free.push_back(turn);

@@ -124,6 +124,8 @@ struct NamedLimb {
   std::optional<std::array<limbs::Vector3, 3>> axes = {};
   /// Index in the chain of the driven joint, if it is not the one that `drive` describes.
   std::optional<std::size_t> driven = {};
+  /// True: the last joint of a chain of parallel revolute joints is a spherical joint.
+  bool ends_in_ball = false;
 };
 
 /// A limb whose table has the key `across`, a vector `normal` to the plane in which the limb moves. The component of

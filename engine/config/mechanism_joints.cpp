@@ -128,6 +128,12 @@ class JointReader {
     axes.insert(axes.end(), also.begin(), also.end());
     return joint(name, point, on, from, all_but_about, axes);
   }
+  /// Makes the joint of a limb with the body that carries its end.
+  JointNodes end_joint(const NamedLimb& limb, const std::string& name, const Vector3& point, std::size_t on,
+                       std::optional<std::size_t> from, const std::vector<Vector3>& turns) const {
+    if (limb.ends_in_ball) return joint(name, point, on, from, JointNodes::Couples::along, {});
+    return limb_joint(limb, name, point, on, from, {}, turns);
+  }
   JointNodes rigid_joint(const std::string& name, const Vector3& point, std::size_t on,
                          std::optional<std::size_t> from) const {
     return joint(name, point, on, from, JointNodes::Couples::all_but_about, {});
@@ -199,7 +205,7 @@ class JointReader {
     const auto& points = limb.points;
     const Vector3 &A = points.at("A"), &B = points.at("B"), &C = points.at("C"), &S = points.at("S");
     const LimbPart &first = limb.parts[limb.parts.size() - 2], &last = limb.parts.back();
-    const std::vector<Vector3> turns = turns_of(limb);
+    const std::vector<Vector3> turns = limb.ends_in_ball ? std::vector<Vector3>() : turns_of(limb);
 
     // A driven revolute joint of a chain with a slide: for the mobility, in which all drives are free, the slide may be
     // the drive.
@@ -224,7 +230,7 @@ class JointReader {
       const std::size_t piston = add_part(limb, last);
       joints_.push_back(rigid_joint(limb.name + ".slide", (A + B) * Term(model_.graph, 0.5), piston, inner));
       joints_.back().drive = drive;
-      joints_.push_back(limb_joint(limb, limb.name + ".B", B, piston, carrier, {}, turns));
+      joints_.push_back(end_joint(limb, limb.name + ".B", B, piston, carrier, turns));
       make_universal(limb, B - A, piston, true);
       return;
     }
@@ -258,7 +264,7 @@ class JointReader {
       }
       make_universal(limb, far - near, outer, false);
       if (const auto& section = limb.rod_section) solids_[outer].beam = held_beam(*section, near, far, true);
-      joints_.push_back(limb_joint(limb, limb.name + ".B" + number, far, outer, carrier, {}, turns));
+      joints_.push_back(end_joint(limb, limb.name + ".B" + number, far, outer, carrier, turns));
       if (limb.driven == 2 && limb.drive == "crank") drive_last(drive);
       make_universal(limb, far - near, outer, true);
     }

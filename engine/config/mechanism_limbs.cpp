@@ -200,6 +200,7 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
                  .has_rod = copy.drive != "slider" || table.has("rod"),
                  .has_links = table.has("links")};
   if (copy.chain && copy.chain->driven != copy.chain->usual) limb.driven = copy.chain->driven;
+  limb.ends_in_ball = copy.chain && limb.revolute && copy.chain->joints.back() == 'S';
   const auto end_on = table.find("end_on");
   if (end_on && !table.has("end"))
     throw end_on->refusal("`end_on` requires `end`; a limb that ends at `platform` is attached to the platform");

@@ -450,6 +450,20 @@ TEST(Mobility, OfADeltaWithABrokenLimbIsTooLarge) {
             "coordinates");
 }
 
+// Spherical joints at the platform let it rotate, even if the coordinates do not contain the rotations.
+TEST(Mobility, OfAChainThatEndsInASphericalJointIncludesRotations) {
+  std::string text =
+      spatial("chain = [\"P\", \"R\", \"S\"]\naxes = [[0, 0, 1], [0, 1, 0]]\nlinks = [\"L\"]\nbranch = \"+\"\n");
+  text = replaced(text, "coordinates = [^\n]*", "coordinates = { z = \"along z\" }");
+  text = replaced(text, "\n\\[platform.follows\\]\n[^\n]*\n[^\n]*\n[^\n]*\n", "\n");
+  text = replaced(text, "\nbox = [^\n]*", "\nbox = { z = [-0.6, 0.6] }");
+  const Robot robot = read(text);
+  EXPECT_THAT(describe_mechanism(*robot), HasSubstr("do not prevent rotation about x, rotation about y"));
+  EXPECT_EQ(why_undefined(*robot, "constraint_singular_value"),
+            "the joints of the limbs transmit 3 constraint forces and couples, but 5 motions are not among the "
+            "coordinates");
+}
+
 TEST(Chains, AreRefusedWithReasons) {
   const auto with = [](const std::string& from, const std::string& to) {
     return refusal_of(planar(replaced(kRRR, from, to)));
