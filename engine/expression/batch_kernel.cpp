@@ -71,6 +71,9 @@ void run_batch(std::span<const BatchStep> steps, const double* registers, double
         binary([](const L& x, const L& y)
                    __attribute__((always_inline)) { return select(y >= y, select(y > x, y, x), y); });
         break;
+      case Code::solve:
+        solve_batch(*step.solve, registers, rows, count);
+        break;
       case Code::other:
         for (std::size_t k = 0; k < count; ++k) {
           double arguments[kMaxArguments];

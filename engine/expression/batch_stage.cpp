@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/expression/implicit_system.hpp"
+
 namespace pkm::expression {
 
 BatchStage::BatchStage(const Program& program, std::size_t stage, std::span<const std::uint32_t> retained)
@@ -12,7 +14,7 @@ BatchStage::BatchStage(const Program& program, std::size_t stage, std::span<cons
   const std::size_t never_freed = of.steps.size();
   std::vector<std::size_t> last(program.registers());
   for (std::size_t k = 0; k < of.steps.size(); ++k)
-    for (std::size_t i = 0; i < of.steps[k].count; ++i) last[of.steps[k].from[i]] = k;
+    for (const std::uint32_t operand : of.steps[k].operands()) last[operand] = k;
   for (const std::uint32_t keep : retained) last[keep] = never_freed;
 
   std::vector<std::uint32_t> free;
@@ -35,12 +37,32 @@ BatchStage::BatchStage(const Program& program, std::size_t stage, std::span<cons
                    .from = {}};
     for (std::size_t i = 0; i < kMaxArguments; ++i)
       if (i < step.count) made.from[i] = operands_[step.from[i]];
-    for (std::size_t i = 0; i < step.count; ++i) {
-      const bool repeated = std::find(step.from.begin(), step.from.begin() + i, step.from[i]) != step.from.begin() + i;
-      if (made.from[i].row && !repeated && last[step.from[i]] == k) free.push_back(made.from[i].index);
+    const auto from = step.operands();
+    BatchSolve solve;
+    for (const std::uint32_t operand : from) solve.from.push_back(operands_[operand]);
+    for (auto operand = from.begin(); operand != from.end(); ++operand) {
+      const bool repeated = std::find(from.begin(), operand, *operand) != operand;
+      if (operands_[*operand].row && !repeated && last[*operand] == k) free.push_back(operands_[*operand].index);
     }
     made.to = allocate(step.to);
+    if (step.solve) {
+      solve.system = step.solve->system;
+      for (std::uint32_t i = 0; i < step.results(); ++i) solve.to.push_back(i == 0 ? made.to : allocate(step.to + i));
+      made.solve = systems_.emplace_back(std::make_shared<const BatchSolve>(std::move(solve))).get();
+    }
     steps_.push_back(made);
+  }
+}
+
+void solve_batch(const BatchSolve& step, const double* registers, double* rows, std::size_t count) {
+  static thread_local std::vector<double> operands, results;
+  operands.resize(step.from.size());
+  results.resize(step.to.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t i = 0; i < operands.size(); ++i)
+      operands[i] = step.from[i].row ? rows[step.from[i].index * kRow + k] : registers[step.from[i].index];
+    step.system->solve(operands, std::span<double>(results));
+    for (std::size_t i = 0; i < results.size(); ++i) rows[step.to[i] * kRow + k] = results[i];
   }
 }
 

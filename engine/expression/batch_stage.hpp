@@ -38,6 +38,15 @@ struct Operand {
   bool row = false;         ///< true: a row with one number per input value; false: a single number
 };
 
+/// A step that solves a system of equations.
+struct BatchSolve {
+  std::shared_ptr<const ImplicitSystem> system;
+  std::vector<Operand> from;
+  std::vector<std::uint32_t> to;  ///< slots of the rows of the status and the unknowns
+};
+/// Solves the system for each of `count` values, one after the other.
+void solve_batch(const BatchSolve& step, const double* registers, double* rows, std::size_t count);
+
 /// A step of the stage. A plain struct, so that the kernels, which are compiled once per instruction set, share no
 /// inline functions with other files.
 struct BatchStep {
@@ -46,6 +55,7 @@ struct BatchStep {
   std::uint8_t count;
   std::uint32_t to;  ///< slot of the row that receives the result
   Operand from[kMaxArguments];
+  const BatchSolve* solve = nullptr;  ///< set if code is Code::solve
 };
 
 /// Runs steps for the first `count` values of each row.
@@ -74,7 +84,8 @@ class BatchStage {
 
  private:
   std::vector<BatchStep> steps_;
-  std::vector<Operand> operands_;  ///< location of each register of the program, by register
+  std::vector<std::shared_ptr<const BatchSolve>> systems_;  ///< those of the steps
+  std::vector<Operand> operands_;                           ///< location of each register of the program, by register
   std::vector<std::uint32_t> inputs_;
   std::size_t slots_ = 0;
 };

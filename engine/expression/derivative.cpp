@@ -1,5 +1,10 @@
 #include "engine/expression/derivative.hpp"
 
+#include <algorithm>
+
+#include "engine/expression/implicit_system.hpp"
+#include "engine/expression/term_matrix.hpp"
+
 namespace pkm::expression {
 namespace {
 
@@ -17,10 +22,37 @@ Term Rates::of(Node root) {
   return cached(root);
 }
 
+void Rates::add_rates_of_unknowns(Node status) {
+  const Solution& solution = *graph_[status].solution;
+  const std::vector<Node> unknowns = graph_.unknowns(status);
+  const auto add = [&](std::size_t i, const Term& rate) { rates_.emplace(unknowns[i], rate.node()); };
+  const std::size_t n = unknowns.size();
+  if (std::ranges::all_of(solution.operands, [&](Node operand) { return cached(operand).is(0); })) {
+    for (std::size_t i = 0; i < n; ++i) add(i, Term(graph_, 0.0));
+    return;
+  }
+  const ImplicitSystem::Nodes at = solution.system->nodes(graph_, unknowns, solution.operands);
+  Rates partial(graph_);  // rates of the equations while the unknowns are fixed
+  for (const Node node : unknowns) partial.set_rate(node, graph_.number(0));
+  for (const Node operand : solution.operands) partial.set_rate(operand, rates_.at(operand));
+  TermMatrix J(graph_, n, n), rates(graph_, n, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    rates(i, 0) = partial.of(at.equations[i]);
+    for (std::size_t j = 0; j < n; ++j) J(i, j) = Term(graph_, at.jacobian[i * n + j]);
+  }
+  const Inverse inverse = inverse_of(J);
+  const TermMatrix scaled = inverse.adjugate * rates;
+  for (std::size_t i = 0; i < n; ++i) add(i, -(scaled(i, 0) / inverse.determinant));
+}
+
 Term Rates::differentiate(Node node) {
   const Entry entry = graph_[node];
   const Term zero(graph_, 0.0), one(graph_, 1.0), f(graph_, node);
-  if (!entry.operation) return zero;
+  if (!entry.operation || entry.solution) return zero;  // the status of a system is piecewise constant
+  if (entry.operation == &unknown()) {
+    add_rates_of_unknowns(entry.arguments[0]);
+    return cached(node);
+  }
   const auto argument = [&](std::size_t i) { return Term(graph_, entry.arguments[i]); };
   const auto rate = [&](std::size_t i) { return cached(entry.arguments[i]); };
   const Term x = argument(0), dx = rate(0);
@@ -47,6 +79,7 @@ Term Rates::differentiate(Node node) {
       return choose(is_less(argument(1), x), rate(1), dx);
     case Code::max:
       return choose(is_less(x, argument(1)), rate(1), dx);
+    case Code::solve:
     case Code::other:
       break;
   }

@@ -27,6 +27,9 @@ class Rates {
   Term cached(Node node) { return {graph_, rates_.at(node)}; }
   /// Applies the chain rule to a node whose operands have cached rates.
   Term differentiate(Node node);
+  /// Caches the rates of the unknowns of a system by the implicit function theorem: J u' = -(rates of the equations
+  /// while u is fixed). The rates of the system's operands are cached.
+  void add_rates_of_unknowns(Node status);
 
   Graph& graph_;
   std::unordered_map<Node, Node> rates_;  ///< rates of change that were set or computed, by node

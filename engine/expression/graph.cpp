@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/error.hpp"
+#include "engine/expression/implicit_system.hpp"
 #include "engine/math/hash.hpp"
 
 namespace pkm::expression {
@@ -26,7 +27,8 @@ std::size_t Graph::Hash::operator()(const Entry& entry) const {
 
 bool Graph::Equal::operator()(const Entry& x, const Entry& y) const {
   return x.operation == y.operation && x.input == y.input && std::ranges::equal(x.operands(), y.operands()) &&
-         std::bit_cast<std::uint64_t>(x.number) == std::bit_cast<std::uint64_t>(y.number);
+         std::bit_cast<std::uint64_t>(x.number) == std::bit_cast<std::uint64_t>(y.number) &&
+         (x.solution ? x.solution->system : nullptr) == (y.solution ? y.solution->system : nullptr);
 }
 
 Node Graph::intern(const Entry& entry) {
@@ -84,6 +86,36 @@ Node Graph::apply(const Operation& operation, std::span<const Node> arguments) {
   return intern(entry);
 }
 
+Node Graph::apply_like(const Entry& entry, std::span<const Node> operands) {
+  if (entry.solution) return solve(entry.solution->system, {operands.begin(), operands.end()}).front();
+  if (entry.operation == &unknown()) return unknowns(operands.front())[static_cast<std::size_t>(entry.number)];
+  return apply(*entry.operation, operands);
+}
+
+std::vector<Node> Graph::solve(std::shared_ptr<const ImplicitSystem> system, std::vector<Node> operands) {
+  PKM_EXPECTS(operands.size() == system->operands());
+  const auto solution = std::make_shared<const Solution>(Solution{std::move(system), std::move(operands)});
+  Entry entry{.operation = &solving(), .solution = solution.get()};
+  for (const Node operand : solution->operands) entry.groups |= (*this)[operand].groups;
+  const Node status = intern(entry);
+  if ((*this)[status].solution == solution.get()) solutions_.push_back(solution);
+  std::vector<Node> nodes = unknowns(status);
+  nodes.insert(nodes.begin(), status);
+  return nodes;
+}
+
+std::vector<Node> Graph::unknowns(Node status) {
+  const Entry of = (*this)[status];
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < of.solution->system->unknowns(); ++i)
+    nodes.push_back(intern({.operation = &unknown(),
+                            .arguments = {status},
+                            .count = 1,
+                            .number = static_cast<double>(i),
+                            .groups = of.groups}));
+  return nodes;
+}
+
 std::vector<Node> Graph::reachable(std::span<const Node> roots, const std::function<bool(Node)>& is_known) const {
   std::vector<bool> seen(entries_.size());
   std::vector<Node> all;
@@ -110,14 +142,13 @@ namespace {
 template <class Leaf>
 Graph rebuild(const Graph& graph, const std::vector<Node>& order, std::vector<Node>& roots, const Leaf& leaf) {
   Graph made;
-  std::vector<Node> copies(graph.size());
+  std::vector<Node> copies(graph.size()), operands;
   for (const Node node : order) {
     const Entry& entry = graph[node];
-    std::array<Node, kMaxArguments> arguments{};
-    for (std::size_t i = 0; i < entry.count; ++i) arguments[i] = copies[static_cast<std::size_t>(entry.arguments[i])];
-    copies[static_cast<std::size_t>(node)] = entry.operation
-                                                 ? made.apply(*entry.operation, std::span(arguments).first(entry.count))
-                                                 : leaf(made, entry, std::as_const(copies));
+    operands.clear();
+    for (const Node operand : entry.operands()) operands.push_back(copies[static_cast<std::size_t>(operand)]);
+    copies[static_cast<std::size_t>(node)] =
+        entry.operation ? made.apply_like(entry, operands) : leaf(made, entry, std::as_const(copies));
   }
   for (Node& root : roots) root = copies[static_cast<std::size_t>(root)];
   return made;

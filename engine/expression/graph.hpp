@@ -15,6 +15,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -28,17 +29,28 @@ enum class Node : std::uint32_t {};  ///< index of a node in its graph; operands
 
 using Groups = std::uint32_t;  ///< set of input groups, one bit each
 
+class ImplicitSystem;
+
+/// A system of equations whose coefficients and start are nodes of a graph.
+struct Solution {
+  std::shared_ptr<const ImplicitSystem> system;
+  std::vector<Node> operands;
+};
+
 /// The contents of a node: an operation with its arguments, an input, or a constant.
 struct Entry {
   const Operation* operation = nullptr;  ///< the operation; null if the node is a constant or an input
   std::array<Node, kMaxArguments> arguments{};
   std::uint8_t count = 0;   ///< number of arguments
-  std::int32_t input = -1;  ///< index of the node among the inputs of the graph; -1 if the node is not an input
-  double number = 0;        ///< value, if the node is a constant
+  std::int32_t input = -1;  ///< index among the inputs of the graph; -1 if the node is no input
+  double number = 0;        ///< value, if the node is a constant; of an unknown, its index
   Groups groups = 0;        ///< groups of all inputs that the node depends on, directly or through its arguments
+  const Solution* solution = nullptr;  ///< the system that the node solves, if its operation is solving()
 
   bool is_number() const { return !operation && input < 0; }
-  std::span<const Node> operands() const { return {arguments.data(), count}; }
+  std::span<const Node> operands() const {
+    return solution ? std::span<const Node>(solution->operands) : std::span<const Node>(arguments.data(), count);
+  }
 };
 
 class Graph {
@@ -48,6 +60,15 @@ class Graph {
   Node input(std::size_t position, Groups group = 1);
   /// The node of operation(arguments). More than two arguments of min or max are nested: min(min(a, b), c).
   Node apply(const Operation& operation, std::span<const Node> arguments);
+  /// The node of the same operation as `entry`, which may belong to another graph, with these operands.
+  Node apply_like(const Entry& entry, std::span<const Node> operands);
+  /// Adds the solution of a system of equations.
+  /// @return the node of its status, which is 1 where the system is solved and otherwise -1, then those of its
+  /// unknowns,
+  ///         which are NaN where it is not solved
+  std::vector<Node> solve(std::shared_ptr<const ImplicitSystem> system, std::vector<Node> operands);
+  /// The nodes of the unknowns, by the node of the status.
+  std::vector<Node> unknowns(Node status);
 
   const Entry& operator[](Node node) const { return entries_[static_cast<std::size_t>(node)]; }
   std::size_t size() const { return entries_.size(); }
@@ -69,6 +90,7 @@ class Graph {
   Node power(Node base, int exponent);
 
   std::vector<Entry> entries_;
+  std::vector<std::shared_ptr<const Solution>> solutions_;  ///< those of the entries
   /// Index of the node for each contents that the graph has (hash-consing).
   std::unordered_map<Entry, Node, Hash, Equal> nodes_;
 };

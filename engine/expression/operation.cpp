@@ -251,6 +251,16 @@ const Operation& angle_wrapping() {
   return wrapping;
 }
 
+const Operation& solving() {
+  static const Operation solving{.name = "solve", .arguments = 0, .rules = {}, .code = Code::solve};
+  return solving;
+}
+
+const Operation& unknown() {
+  static const Operation unknown{.name = "unknown", .arguments = 1, .rules = {}};
+  return unknown;
+}
+
 const Operation& operation(const std::string& name) {
   for (const auto* const list : {&functions(), &operators()})
     if (const Operation* const found = find_named(*list, name)) return *found;

@@ -18,8 +18,8 @@
 namespace pkm::expression {
 
 /// Selects a dedicated implementation: in Program::run and in the SIMD kernel (batch_kernel.cpp). `other`: there is
-/// none, the operation is evaluated through Operation::rules.
-enum class Code : unsigned char { add, subtract, multiply, divide, negate, sqrt, abs, min, max, other };
+/// none, the operation is evaluated through Operation::rules. `solve`: a system of equations (implicit_system.hpp).
+enum class Code : unsigned char { add, subtract, multiply, divide, negate, sqrt, abs, min, max, solve, other };
 
 /// Evaluates an operation for the arguments x[0], ..., x[count - 1].
 template <class S>
@@ -47,6 +47,10 @@ const Operation& negation();
 const Operation& choice();
 /// Wraps an angle [rad] to (-pi, pi] by subtracting full turns; for internal use, formulas cannot call it.
 const Operation& angle_wrapping();
+/// The operations of the nodes that Graph::solve() adds; for internal use, and without rules: solving a system of
+/// equations, and the value of one of its unknowns.
+const Operation& solving();
+const Operation& unknown();
 
 /// Finds a function or a binary operator by its name. Throws std::logic_error if there is none.
 const Operation& operation(const std::string& name);

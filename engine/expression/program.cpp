@@ -3,6 +3,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "engine/expression/implicit_system.hpp"
 #include "engine/expression/interval_steps.hpp"
 
 namespace pkm::expression {
@@ -10,6 +11,7 @@ namespace pkm::expression {
 Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<const Groups> stages)
     : stages_(std::max<std::size_t>(stages.size(), 1)) {
   std::unordered_map<Node, std::uint32_t> registers;
+  std::uint32_t next = 0;
   const auto stage_for = [&](Groups groups) {
     std::size_t stage = 0;
     for (Groups known = stages.empty() ? groups : stages[0]; stage + 1 < stages_.size() && (groups & ~known) != 0;)
@@ -18,7 +20,11 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
   };
   for (const Node node : graph.reachable(outputs)) {
     const Entry& entry = graph[node];
-    const auto to = static_cast<std::uint32_t>(registers.size());
+    if (entry.operation == &unknown()) {  // the step that solves the system writes its register
+      registers.emplace(node, registers.at(entry.arguments[0]) + 1 + static_cast<std::uint32_t>(entry.number));
+      continue;
+    }
+    const std::uint32_t to = next++;
     registers.emplace(node, to);
     const std::size_t stage = stage_for(entry.groups);
     stage_of_.push_back(entry.is_number() ? -1 : static_cast<int>(stage));
@@ -26,6 +32,13 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
       Step step{
           .operation = entry.operation, .to = to, .from = {}, .count = entry.count, .code = entry.operation->code};
       for (std::size_t i = 0; i < entry.count; ++i) step.from[i] = registers.at(entry.arguments[i]);
+      if (entry.solution) {
+        SolveStep solve{.system = entry.solution->system, .from = {}};
+        for (const Node operand : entry.operands()) solve.from.push_back(registers.at(operand));
+        step.solve = systems_.emplace_back(std::make_shared<const SolveStep>(std::move(solve))).get();
+        next += static_cast<std::uint32_t>(step.results() - 1);
+        stage_of_.resize(next, static_cast<int>(stage));
+      }
       stages_[stage].steps.push_back(step);
     } else if (entry.is_number()) {
       numbers_.emplace_back(to, entry.number);
@@ -34,10 +47,23 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
     }
   }
   for (const Node node : outputs) outputs_.push_back(registers.at(node));
-  registers_ = registers.size();
+  registers_ = next;
 }
 
+std::span<const std::uint32_t> Program::Step::operands() const {
+  return solve ? std::span<const std::uint32_t>(solve->from) : std::span<const std::uint32_t>(from.data(), count);
+}
+std::size_t Program::Step::results() const { return solve ? 1 + solve->system->unknowns() : 1; }
+
 namespace {
+
+template <class S>
+void run_solve(const Program::Step& step, std::span<S> registers) {
+  static thread_local std::vector<S> operands;
+  operands.clear();
+  for (const std::uint32_t operand : step.operands()) operands.push_back(registers[operand]);
+  step.solve->system->solve(operands, registers.subspan(step.to, step.results()));
+}
 
 /// Evaluates one of the four basic operations or a negation without an indirect call, which is faster.
 /// @return false if the operation is another one, or if the value is not finite: then Operation::rules must be used,
@@ -72,6 +98,10 @@ template <class S>
 void Program::run(std::size_t stage, std::span<S> registers) const {
   for (const Step& step : stages_[stage].steps) {
     if (run_inline(step, registers)) continue;
+    if (step.code == Code::solve) {
+      run_solve(step, registers);
+      continue;
+    }
     S arguments[kMaxArguments];
     for (std::size_t i = 0; i < step.count; ++i) arguments[i] = registers[step.from[i]];
     registers[step.to] = std::get<Rule<S>>(step.operation->rules)(arguments, step.count);
@@ -104,6 +134,9 @@ namespace {
       break;
     case Code::sqrt:
       to = sqrt(x);
+      break;
+    case Code::solve:
+      run_solve(step, registers);
       break;
     default: {
       Interval arguments[kMaxArguments];

@@ -23,12 +23,23 @@ namespace pkm::expression {
 /// output depends on has its own register.
 class Program {
  public:
+  /// A system of equations with the registers of its operands.
+  struct SolveStep {
+    std::shared_ptr<const ImplicitSystem> system;
+    std::vector<std::uint32_t> from;
+  };
   struct Step {
     const Operation* operation;
     std::uint32_t to;                               ///< register of the result
     std::array<std::uint32_t, kMaxArguments> from;  ///< registers of the arguments
     std::uint8_t count;                             ///< number of arguments
-    Code code;                                      ///< code of `operation`
+    Code code;                                      ///< operation->code
+    /// The system that the step solves, if code is Code::solve; it then writes `to` and the registers that follow it,
+    /// one per unknown. It belongs to the program and its copies.
+    const SolveStep* solve = nullptr;
+
+    std::span<const std::uint32_t> operands() const;
+    std::size_t results() const;  ///< number of registers that the step writes
   };
   struct Input {
     std::uint32_t position;  ///< index of the input among the inputs of the graph
@@ -85,6 +96,7 @@ class Program {
   std::vector<std::pair<std::uint32_t, double>> numbers_;  ///< for each constant, its register and its value
   std::vector<std::uint32_t> outputs_;
   std::vector<int> stage_of_;
+  std::vector<std::shared_ptr<const SolveStep>> systems_;  ///< those of the steps
   std::size_t registers_ = 0;
 };
 

@@ -1,8 +1,27 @@
 #include "engine/expression/reverse_mode.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "engine/expression/implicit_system.hpp"
+
 namespace pkm::expression {
+namespace {
+
+void sweep_system(const Program::Step& step, std::span<const double> registers, std::span<double> adjoints) {
+  const std::span<double> of_results = adjoints.subspan(step.to, step.results());
+  const std::vector<double> of_unknowns(of_results.begin() + 1, of_results.end());
+  std::ranges::fill(of_results, 0.0);
+  if (std::ranges::count(of_unknowns, 0.0) == static_cast<std::ptrdiff_t>(of_unknowns.size())) return;
+  std::vector<double> operands;
+  for (const std::uint32_t operand : step.operands()) operands.push_back(registers[operand]);
+  const std::vector<double> found =
+      step.solve->system->adjoints(operands, registers.subspan(step.to + 1, of_unknowns.size()), of_unknowns);
+  for (std::size_t i = 0; i < operands.size(); ++i)
+    if (std::isfinite(found[i])) adjoints[step.operands()[i]] += found[i];
+}
+
+}  // namespace
 
 void backward_sweep(const Program& program, std::size_t stage, std::span<const double> registers,
                     std::span<double> adjoints) {
@@ -11,6 +30,10 @@ void backward_sweep(const Program& program, std::size_t stage, std::span<const d
     if (std::isfinite(adjoint)) adjoints[to] += adjoint;
   };
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    if (step->solve) {
+      sweep_system(*step, registers, adjoints);
+      continue;
+    }
     const double adjoint = adjoints[step->to];
     adjoints[step->to] = 0;
     if (adjoint == 0) continue;

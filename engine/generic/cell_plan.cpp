@@ -144,7 +144,8 @@ double cost_of(const std::vector<Program::Step>& steps) {
   double sum = 0;
   for (const Program::Step& step : steps) {
     const expression::Code code = step.operation->code;
-    sum += code == expression::Code::other                                      ? 40
+    sum += code == expression::Code::solve                                      ? 2000
+           : code == expression::Code::other                                    ? 40
            : code == expression::Code::sqrt || code == expression::Code::divide ? 4
                                                                                 : 1;
   }
@@ -201,8 +202,8 @@ void CellPlan::set_loops(std::size_t count) {
     if (stage == kInner) retained_by_inner.push_back(at);
   }
   for (const auto& step : program.stages()[kInner].steps)
-    for (std::size_t i = 0; i < step.count; ++i)
-      if (program.stage_of()[step.from[i]] == kMiddle) passed_to_inner.push_back(step.from[i]);
+    for (const std::uint32_t operand : step.operands())
+      if (program.stage_of()[operand] == kMiddle) passed_to_inner.push_back(operand);
   std::ranges::sort(passed_to_inner);
   passed_to_inner.erase(std::unique(passed_to_inner.begin(), passed_to_inner.end()), passed_to_inner.end());
   retained_by_middle.insert(retained_by_middle.end(), passed_to_inner.begin(), passed_to_inner.end());

@@ -136,8 +136,8 @@ IntervalConstraints interval_constraints(const Model& model, const std::vector<I
                              : made.graph.input(static_cast<std::size_t>(entry.input), entry.groups);
       continue;
     }
-    std::array<Node, expression::kMaxArguments> arguments{};
-    for (std::size_t i = 0; i < entry.count; ++i) arguments[i] = copies[static_cast<std::size_t>(entry.arguments[i])];
+    std::vector<Node> arguments;
+    for (const Node operand : entry.operands()) arguments.push_back(copies[static_cast<std::size_t>(operand)]);
     if (test.ensures_domain(entry)) {
       const auto clamp = [&](const char* function, double bound) {
         arguments[0] =
@@ -146,7 +146,7 @@ IntervalConstraints interval_constraints(const Model& model, const std::vector<I
       clamp("max", entry.operation->code == Code::sqrt ? 0 : -1);
       if (entry.operation->code != Code::sqrt) clamp("min", 1);
     }
-    to = made.graph.apply(*entry.operation, std::span(arguments).first(entry.count));
+    to = made.graph.apply_like(entry, arguments);
   }
   for (const auto& constraint : constraints)
     made.all.push_back({constraint.name, copies[static_cast<std::size_t>(constraint.node)]});

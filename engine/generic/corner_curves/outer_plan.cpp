@@ -30,6 +30,9 @@ std::optional<OuterFunction> function_at_singularities(const Program::Step& step
     case Code::min:
     case Code::max:
       return OuterFunction{.kind = Kind::difference, .registers = {step.from[0], step.from[1]}};
+    case Code::solve:
+      is_supported = false;
+      return {};
     case Code::other:
       if (step.operation->name == "asin" || step.operation->name == "acos")
         return OuterFunction{.kind = Kind::one_minus_square, .registers = {step.from[0]}, .has_root = true};

@@ -87,16 +87,15 @@ void eliminate_angles(Graph& graph, const std::function<bool(Node)>& is_sign, st
     const Entry entry = graph[node];
     Node& to = rewritten[static_cast<std::size_t>(node)] = node;
     if (!entry.operation) continue;
-    std::array<Node, expression::kMaxArguments> arguments{};
-    for (std::size_t i = 0; i < entry.count; ++i)
-      arguments[i] = rewritten[static_cast<std::size_t>(entry.arguments[i])];
+    std::vector<Node> arguments;
+    for (const Node operand : entry.operands()) arguments.push_back(rewritten[static_cast<std::size_t>(operand)]);
     const bool is_sine = entry.operation->name == "sin";
     if (is_sine || entry.operation->name == "cos")
       if (const auto found = angles.of(arguments[0])) {
         to = (is_sine ? found->sine : found->cosine).node();
         continue;
       }
-    to = graph.apply(*entry.operation, std::span(arguments).first(entry.count));
+    to = graph.apply_like(entry, arguments);
   }
   for (Node& root : roots) root = rewritten[static_cast<std::size_t>(root)];
 }

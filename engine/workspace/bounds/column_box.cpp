@@ -164,7 +164,7 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
       continue;
     }
 
-    bool divided = false, may_bisect = false;
+    bool divided = false, may_bisect = false, all_continuous = true;
     Root root;
     const auto push = [&](std::int64_t from, std::int64_t to, const OpenConstraints& open) {
       if (from < to) pending.push_back({from, to, open});
@@ -181,6 +181,7 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
       if (!segment.open[k] || !constraints_.depends(k, z)) continue;
       root = enclose_root(k, segment, sides, centre, scratch);
       may_bisect = may_bisect || !root.is_enclosed;
+      all_continuous = all_continuous && root.is_continuous;
       if (root.is_enclosed) {
         // Extend R by one step on either side, because a proof checker may round differently.
         const std::int64_t low =
@@ -207,7 +208,10 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
     if (divided) continue;
 
     const Interval all = grid_.length(segment.from, segment.to);
-    if (may_bisect && size > std::max<std::int64_t>(min_bisected_size, 1)) {
+    // Where a constraint may be undefined, it can be undecided on a segment of positive length however often this is
+    // bisected. Without outer coordinates, whose bisection is limited, this would then take very long.
+    const std::int64_t min_size = all_continuous ? 1 : ColumnGrid::kSteps >> 16U;
+    if (may_bisect && size > std::max(min_bisected_size, min_size)) {
       split(segment.from + size / 2, segment.from + size / 2);
       continue;
     }

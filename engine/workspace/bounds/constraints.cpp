@@ -45,41 +45,44 @@ Constraints::Constraints(Graph graph, const std::vector<NamedConstraint>& constr
     all_.push_back(std::move(constraint));
   }
   const Groups last = axis_group(axes_.size() - 1);
-  const Program program(graph, outputs, std::array{kConstant, ~(kConstant | last), last});
+  program_ = Program(graph, outputs, std::array{kConstant, ~(kConstant | last), last});
   const std::size_t width = 1 + axes_.size();
   for (std::size_t k = 0; k < all_.size(); ++k) {
-    all_[k].value = extract(program, k * width, 1);
-    all_[k].derivatives = extract(program, k * width, width);
+    all_[k].value = extract(k * width, 1);
+    all_[k].derivatives = extract(k * width, width);
   }
   registers_.resize(axes_.size());
-  for (const Program::Stage& stage : program.stages())
+  for (const Program::Stage& stage : program_.stages())
     for (const Program::Input& input : stage.inputs)
       for (std::size_t axis = 0; axis < axes_.size(); ++axis)
         if (axes_[axis] == input.position) registers_[axis] = input.to;
-  initial_.registers_.resize(program.registers());
-  initial_.versions_.resize(program.registers());
-  program.start<Interval>(initial_.registers_);
-  program.run<Interval>(0, inputs, initial_.registers_);
+  initial_.registers_.resize(program_.registers());
+  initial_.versions_.resize(program_.registers());
+  program_.start<Interval>(initial_.registers_);
+  program_.run<Interval>(0, inputs, initial_.registers_);
 }
 
-Constraints::Subprogram Constraints::extract(const Program& program, std::size_t first_output, std::size_t count) {
+Constraints::Subprogram Constraints::extract(std::size_t first_output, std::size_t count) {
   Subprogram subprogram{.outputs = {}, .outer_steps = {}, .last_steps = {}, .index = initial_.evaluated_.size()};
   initial_.evaluated_.push_back(0);
-  std::vector<bool> needed(program.registers());
+  std::vector<bool> needed(program_.registers());
   for (std::size_t i = 0; i < count; ++i) {
-    subprogram.outputs.push_back(program.outputs()[first_output + i]);
+    subprogram.outputs.push_back(program_.outputs()[first_output + i]);
     needed[subprogram.outputs.back()] = true;
   }
   const auto collect = [&](const Program::Stage& stage, std::vector<Program::Step>& to) {
     for (auto step = stage.steps.rbegin(); step != stage.steps.rend(); ++step) {
-      if (!needed[step->to]) continue;
-      for (std::size_t i = 0; i < step->count; ++i) needed[step->from[i]] = true;
+      const auto first = needed.begin() + step->to;
+      if (std::find(first, first + static_cast<std::ptrdiff_t>(step->results()), true) ==
+          first + static_cast<std::ptrdiff_t>(step->results()))
+        continue;
+      for (const std::uint32_t operand : step->operands()) needed[operand] = true;
       to.push_back(*step);
     }
     std::ranges::reverse(to);
   };
-  collect(program.stages()[2], subprogram.last_steps);
-  collect(program.stages()[1], subprogram.outer_steps);
+  collect(program_.stages()[2], subprogram.last_steps);
+  collect(program_.stages()[1], subprogram.outer_steps);
   return subprogram;
 }
 

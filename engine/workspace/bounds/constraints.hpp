@@ -80,8 +80,9 @@ class Constraints {
   };
 
   void run(const Subprogram& subprogram, const Interval& last_side, Scratch& scratch) const;
-  Subprogram extract(const expression::Program& program, std::size_t first_output, std::size_t count);
+  Subprogram extract(std::size_t first_output, std::size_t count);
 
+  expression::Program program_;
   std::vector<std::size_t> axes_;
   /// For each axis, the register of its input; std::nullopt: no constraint depends on the axis.
   std::vector<std::optional<std::uint32_t>> registers_;
