@@ -135,6 +135,13 @@ struct LimbInPlane {
   limbs::Vector3 A, B, normal;
 };
 
+/// An unknown of a [[solve]].
+struct SolvedUnknown {
+  ConfigValue at;  ///< its name in the file
+  std::string name;
+  std::function<limbs::Term()> value;
+};
+
 /// A parameter that belongs to a single limb, such as "arm2.l_b", and its node in the expression graph.
 struct OwnParameter : LimbParameter {
   expression::Node node{};
@@ -173,7 +180,8 @@ struct MechanismDraft {
   std::vector<OwnParameter> own;
   /// The table of the selected mass model in [masses]; std::nullopt: there is no [masses].
   std::optional<ConfigValue> masses;
-  std::vector<ConfigValue> let;  ///< the tables [let] of the file and of the selected mass model
+  std::vector<SolvedUnknown> unknowns;  ///< the unknowns of all [[solve]] tables
+  std::vector<ConfigValue> let;         ///< the tables [let] of the file and of the selected mass model
   /// Tables of limbs with `chain`, rewritten with the keys of another drive; ConfigValue refers to them.
   std::deque<TomlValue> rewritten;
 

@@ -4,6 +4,7 @@
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/mechanism_keys.hpp"
+#include "engine/config/mechanism_solve.hpp"
 #include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/core/unit.hpp"
@@ -207,13 +208,9 @@ std::string si_unit(const ConfigValue& unit) {
 
 namespace {
 
-void read_draft(const std::string& text, const std::string& file_name, const std::vector<LimbParameter>& own,
-                const std::string& mass_model, const StudyAdditions& study, MechanismDraft& draft) {
-  const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
-  if (document.keys.empty())
-    throw ConfigError({file_name, 0, ""}, "an empty file",
-                      "a mechanism: [mechanism], [parameters], [platform], [[limb]]");
-  const ConfigValue root = ConfigValue(document, file_name, "").described_by(mechanism_keys());
+/// Reads everything that the formulas of [[solve]] may use. @return the table [platform]
+ConfigValue read_definitions(const ConfigValue& root, const std::vector<LimbParameter>& own,
+                             const std::string& mass_model, const StudyAdditions& study, MechanismDraft& draft) {
   read_names(root, draft);
   choose_masses(root, mass_model, draft);
   read_parameters(root, own, study, draft);
@@ -222,13 +219,33 @@ void read_draft(const std::string& text, const std::string& file_name, const std
   if (study) read_quantity_limits(*study, draft);
   const ConfigValue platform = root.at("platform", "a table [platform] with its coordinates").table();
   read_coordinates(platform, draft);
+  add_unknowns(draft);
   read_modes(root, draft);
   read_inputs(root, draft);
   read_frames(root, platform, draft);
   draft.scope.allow_motion(true);
   read_let(root, draft);
   draft.scope.allow_motion(false);
+  return platform;
+}
+
+void read_draft(const std::string& text, const std::string& file_name, const std::vector<LimbParameter>& own,
+                const std::string& mass_model, const StudyAdditions& study, MechanismDraft& draft) {
+  const TomlValue document = parse_toml(text, file_name, "a mechanism in TOML");
+  if (document.keys.empty())
+    throw ConfigError({file_name, 0, ""}, "an empty file",
+                      "a mechanism: [mechanism], [parameters], [platform], [[limb]]");
+  const ConfigValue root = ConfigValue(document, file_name, "").described_by(mechanism_keys());
+  SolvedSystems systems(root);
+  if (!systems.empty()) {
+    systems.use_inputs();
+    read_definitions(root, own, mass_model, study, systems.draft());
+    systems.read_equations();
+    systems.use_solutions(draft);
+  }
+  const ConfigValue platform = read_definitions(root, own, mass_model, study, draft);
   resolve_frames(root, platform, draft);
+  systems.add_margins(draft);
   read_platform(platform, draft);
   read_limbs(root, draft);
   read_frame_bodies(root, draft);

@@ -151,8 +151,12 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
   if (count < 1 || count > kMaxCoordinates) throw all.error("1 to 6 coordinates");
   const auto follows_key = platform.find("follows");
   const auto follows = follows_key ? std::optional(follows_key->table_of_names(all.keys())) : std::nullopt;
-  if (follows && follows->keys().size() == count)
-    throw follows->refusal("every coordinate follows from the others; at least one has to be independent");
+  const auto is_dependent = [&](const std::string& name) {
+    return (follows && follows->has(name)) || find_named(draft.unknowns, name);
+  };
+  if (std::ranges::all_of(all.keys(), is_dependent))
+    throw(follows ? *follows : all)
+        .refusal("every coordinate follows from the others; at least one has to be independent");
   for (const std::string& name : all.keys()) {
     const ConfigValue value = *all.find(name);
     const std::string& kind = value.word();
@@ -162,7 +166,12 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
       throw value.refusal("there is already a coordinate " + kind);
     if (motion.rotates && std::ranges::count(draft.motions, true, &PlatformMotion::rotates) == 3)
       throw value.refusal("a platform has at most three rotations");
-    if (const auto formula = follows ? follows->find(name) : std::nullopt) {
+    const auto formula = follows ? follows->find(name) : std::nullopt;
+    if (const SolvedUnknown* const unknown = find_named(draft.unknowns, name)) {
+      if (formula) throw formula->refusal("'" + name + "' is an unknown of [[solve]], and needs no formula");
+      draft.scope.add_deferred(value, name, unknown->value);
+      model.dependent.push_back({name, motion.unit(), kind, {}});
+    } else if (formula) {
       draft.scope.add_deferred(*formula, name, [formula = *formula, name, unit = motion.unit(), &draft] {
         return draft.scope.formula(formula, unit, name);
       });

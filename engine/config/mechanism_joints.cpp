@@ -184,7 +184,7 @@ class JointReader {
   }
 
   void add_limb(const NamedLimb& limb) {
-    if (limb.drive == "formula") return;  // described by [[joint]] instead
+    if (limb.drive == "formula") return;  // the joints of this limb are described by [[joint]] tables instead
     if (limb.axes) return add_spherical(limb);
     if (limb.parts.size() == 1)
       throw IncompleteDescription{"limb " + limb.name +

@@ -127,6 +127,21 @@ const TableSpec& frame_table() {
   return spec;
 }
 
+const TableSpec& solve_table() {
+  static const TableSpec spec = {
+      .header = "[[solve]]",
+      .meaning = "unknowns without a closed form: Newton's method solves their equations at every pose",
+      .keys = {required(texts_key("unknowns",
+                                  "1 to 6 names: coordinates of the platform, which then depend on the others, or new "
+                                  "names for formulas")),
+               required(formulas_key("equations", kUnitOfEntry, 0,
+                                     "formulas that vanish, one per unknown; the value of a formula may be a vector, "
+                                     "which counts as three")),
+               required(formulas_key("start", kUnitOfEntry, 0,
+                                     "number or formula for each unknown, from which Newton's method starts"))}};
+  return spec;
+}
+
 const TableSpec& forces_table() {
   static const TableSpec accelerations = {
       .meaning = "accelerations of coordinates",
@@ -388,19 +403,29 @@ const TableSpec& study_parameters_keys() {
 
 const TableSpec& mechanism_keys() {
   static const TableSpec parameters = parameters_table("[parameters]"), let = let_table("[let]");
-  static const TableSpec spec = {
-      .header = "",
-      .meaning = "mechanism file of pkmopt",
-      .keys = {required(table_key("mechanism", name_table())), required(table_key("parameters", parameters)),
-               table_key("masses", masses_table()), required(table_key("platform", platform_table())),
-               tables_key("frame", frame_table()), table_key("survey", survey_table()),
-               table_key("modes", modes_table()), table_key("let", let), required(tables_key("limb", limb_keys())),
-               table_key("inputs", inputs_table()), table_key("forces", forces_table()),
-               table_key("accuracy", accuracy_keys()), tables_key("quantity", quantity_keys()),
-               tables_key("limit", limit_table()), tables_key("margin", margin_table()),
-               tables_key("design", design_table()), tables_key("link", link_table()), tables_key("body", body_table()),
-               tables_key("joint", joint_table())},
-      .noun = "table"};
+  static const TableSpec spec = {.header = "",
+                                 .meaning = "mechanism file of pkmopt",
+                                 .keys = {required(table_key("mechanism", name_table())),
+                                          required(table_key("parameters", parameters)),
+                                          table_key("masses", masses_table()),
+                                          required(table_key("platform", platform_table())),
+                                          tables_key("frame", frame_table()),
+                                          tables_key("solve", solve_table()),
+                                          table_key("survey", survey_table()),
+                                          table_key("modes", modes_table()),
+                                          table_key("let", let),
+                                          required(tables_key("limb", limb_keys())),
+                                          table_key("inputs", inputs_table()),
+                                          table_key("forces", forces_table()),
+                                          table_key("accuracy", accuracy_keys()),
+                                          tables_key("quantity", quantity_keys()),
+                                          tables_key("limit", limit_table()),
+                                          tables_key("margin", margin_table()),
+                                          tables_key("design", design_table()),
+                                          tables_key("link", link_table()),
+                                          tables_key("body", body_table()),
+                                          tables_key("joint", joint_table())},
+                                 .noun = "table"};
   return spec;
 }
 

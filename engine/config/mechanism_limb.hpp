@@ -21,8 +21,9 @@ struct LimbCopy {
   std::string group;                  ///< name of the [[limb]] in the file, for example "arm"
   std::string name;                   ///< name of this copy, for example "arm2"
   limbs::Rotation turn;               ///< rotation that maps the geometry in the file to this copy
-  const NamedFrame &base, &platform;  ///< the frames of the limb's ends
-  ConfigValue ends;  ///< table that contains its `base` and `platform`: that of the limb, or one of `copies`
+  const NamedFrame &base, &platform;  ///< frames to which the two ends of the limb are attached
+  ConfigValue ends;  ///< table that contains the limb's keys `base` and `platform`: the table of the limb, or an
+                     ///< element of `copies`
   const Chain* chain = nullptr;  ///< the chain from which `table` was rewritten, or that is spherical; null: none
 
   limbs::Term length(const char* key, const char* expected) const;

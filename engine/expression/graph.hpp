@@ -42,7 +42,7 @@ struct Entry {
   const Operation* operation = nullptr;  ///< the operation; null if the node is a constant or an input
   std::array<Node, kMaxArguments> arguments{};
   std::uint8_t count = 0;   ///< number of arguments
-  std::int32_t input = -1;  ///< index among the inputs of the graph; -1 if the node is no input
+  std::int32_t input = -1;  ///< index of the node among the inputs of the graph; -1 if the node is not an input
   double number = 0;        ///< value, if the node is a constant; of an unknown, its index
   Groups groups = 0;        ///< groups of all inputs that the node depends on, directly or through its arguments
   const Solution* solution = nullptr;  ///< the system that the node solves, if its operation is solving()

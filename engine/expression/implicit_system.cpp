@@ -411,7 +411,7 @@ class ImplicitSystem::Krawczyk {
 
   /// Krawczyk's test at the approximate solution. @param image  receives an enclosure of the solution minus u
   bool verify(Box& image) {
-    constexpr int kMaxTrials = 8, kRefinements = 2;
+    constexpr int kMaxTrials = 6, kRefinements = 2;
     Box Yf;
     if (!step(Yf)) return false;
     for (std::size_t i = 0; i < n_; ++i) image[i] = -Yf[i];
@@ -457,7 +457,7 @@ class ImplicitSystem::Krawczyk {
     Vector distance{};
     for (std::size_t i = 0; i < n_; ++i) distance[i] = magnitude(box[i] - solution[i]);
     Vector w = distance;
-    for (int trial = 0; trial < 6; ++trial) {
+    for (int trial = 0; trial < 3; ++trial) {
       Box region;
       for (std::size_t i = 0; i < n_; ++i) region[i] = solution[i] + ball(w[i]);
       if (!contract(region)) return false;

@@ -33,7 +33,7 @@ class Program {
     std::uint32_t to;                               ///< register of the result
     std::array<std::uint32_t, kMaxArguments> from;  ///< registers of the arguments
     std::uint8_t count;                             ///< number of arguments
-    Code code;                                      ///< operation->code
+    Code code;                                      ///< code of `operation`
     /// The system that the step solves, if code is Code::solve; it then writes `to` and the registers that follow it,
     /// one per unknown. It belongs to the program and its copies.
     const SolveStep* solve = nullptr;

@@ -46,6 +46,9 @@ class Collector {
     add_functions();
     std::vector<Node> roots;
     for_each_output([&](Output& output) { roots.insert(roots.end(), output.nodes.begin(), output.nodes.end()); });
+    if (std::ranges::any_of(graph_.reachable(roots), [&](Node node) { return graph_[node].solution; }))
+      throw std::invalid_argument("code is generated from formulas, and " + model_.info.name +
+                                  " has unknowns of [[solve]], which have none");
     replace_limits(limits, roots);
     replace_constants(parameters, roots);
     auto next = roots.begin();

@@ -192,14 +192,14 @@ TEST_F(ParetoFrontProgram, SeedsAreComparedByHypervolumesWithOneReferencePoint) 
   std::string text = volume_conditioning();
   text.erase(text.find("[[stage]]                                     # points"));
   write(text);
-  ASSERT_EQ(run({"run", "study.toml", "--seeds", "2"}), 0) << output_;
+  ASSERT_EQ(run({"run", "study.toml", "--seeds", "2", "--digits", "10"}), 0) << output_;
   EXPECT_THAT(output_, HasSubstr("hypervolume"));
   char value[40];
   std::snprintf(value, sizeof value, "%.10g", read("study-seed-1.h5").stages[0].front->hypervolume.back());
   EXPECT_THAT(output_, HasSubstr(value));
   replace(text, "reference", "# reference");
   write(text);
-  ASSERT_EQ(run({"run", "study.toml", "--seeds", "2", "--force"}), 0) << output_;
+  ASSERT_EQ(run({"run", "study.toml", "--seeds", "2", "--force", "--digits", "10"}), 0) << output_;
   std::snprintf(value, sizeof value, "%.10g", read("study-seed-1.h5").stages[0].front->hypervolume.back());
   EXPECT_THAT(output_, Not(HasSubstr(value)));  // each seed has its own reference point
   EXPECT_THAT(output_, HasSubstr("2 of 2 seeds ended feasible"));

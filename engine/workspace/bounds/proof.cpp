@@ -32,6 +32,10 @@ class Formulas {
     const std::vector<Node> used = statement.graph.reachable(roots);
     for (const Node node : used) {
       const Entry& entry = statement.graph[node];
+      if (entry.solution)
+        throw std::runtime_error(
+            "there is no proof: the constraints depend on unknowns of [[solve]], for which pkmopt-check-proof has no "
+            "rules");
       for (const Node operand : entry.operands()) ++uses_[operand];
       if (entry.operation == &expression::angle_wrapping()) named_.insert(entry.arguments[0]);
     }

@@ -1,0 +1,58 @@
+// Reads the tables [[solve]]: unknowns that are defined by equations.
+//
+// The equations of a file may use its frames and formulas, which may use the unknowns. The definitions of the file are
+// therefore read twice: first into a draft of their own, in which the unknowns are inputs of the graph, to find the
+// equations; then into the draft of the mechanism, in which the unknowns are solutions of these equations.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/config/mechanism_draft.hpp"
+
+namespace pkm {
+
+class SolvedSystems {
+ public:
+  explicit SolvedSystems(const ConfigValue& root);
+
+  bool empty() const { return systems_.empty(); }
+  /// The draft in which the unknowns are inputs.
+  MechanismDraft& draft() { return *draft_; }
+  /// Defines the unknowns as inputs of draft().
+  void use_inputs();
+  /// Reads the equations and the start of all systems, after the definitions have been read into draft().
+  void read_equations();
+  /// Defines the unknowns of the mechanism as solutions of the equations.
+  void use_solutions(MechanismDraft& mechanism);
+  /// Adds a constraint for each system: that it has a solution.
+  void add_margins(MechanismDraft& mechanism);
+
+ private:
+  struct System {
+    ConfigValue table;
+    std::vector<std::string> unknowns;
+    std::vector<ConfigValue> at;                     ///< the names of the unknowns in the file
+    std::vector<expression::Node> equations, start;  ///< nodes of draft()
+    std::vector<expression::Node> solution = {};     ///< nodes of the mechanism: the status, then the unknowns
+    bool is_being_solved = false;
+  };
+
+  void read_equations(System& system);
+  void read_start(System& system);
+  /// The solution of a system as nodes of the mechanism. Refuses a system that depends on itself through another one.
+  const std::vector<expression::Node>& solve(System& system, MechanismDraft& mechanism);
+  /// Copies nodes of draft() to the mechanism, with the solutions of other systems in place of their unknowns.
+  std::vector<expression::Node> copied(const std::vector<expression::Node>& nodes, MechanismDraft& mechanism);
+  /// The system and the index of the unknown that an input of draft() stands for; {null, 0} for other inputs.
+  std::pair<System*, std::size_t> unknown_of(const expression::Entry& entry);
+
+  std::vector<System> systems_;
+  std::unique_ptr<MechanismDraft> draft_;
+};
+
+/// Adds those unknowns that are no coordinates to the names of formulas.
+void add_unknowns(MechanismDraft& draft);
+
+}  // namespace pkm
