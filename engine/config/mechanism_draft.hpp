@@ -170,9 +170,6 @@ struct MechanismDraft {
   std::vector<std::string> frame_names;      ///< "base", "platform", and those of the [[frame]] tables
   std::vector<NamedLimb> limbs;
   std::vector<LimbInPlane> in_planes;
-  /// For each limb, the ranges of the platform's x, y and z that are within the reach of the limb; std::nullopt:
-  /// unknown.
-  std::vector<std::array<std::optional<std::array<limbs::Term, 2>>, 3>> reaches;
   std::vector<SignChoice> sign_choices;  ///< the signs of the working modes, in the order of the graph's inputs
 
   /// For each joint, the stiffness of its drive [N/m or N m/rad]; std::nullopt: rigid.
@@ -292,6 +289,9 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
 void add_clearance(MechanismDraft& draft);
 /// Reads the table [survey].
 void read_survey(const ConfigValue& root, MechanismDraft& draft);
+/// Prepares the contraction of coordinates without a box; those that remain unbounded have no range. The constraints of
+/// the model must be complete.
+void bound_survey(MechanismDraft& draft);
 /// Lists all combinations of the signs as working modes, the default first.
 void list_modes(MechanismDraft& draft);
 

@@ -286,6 +286,7 @@ generic::Model read_mechanism_model(const std::string& text, const std::string& 
                                     const StudyAdditions& study) {
   MechanismDraft draft;
   read_draft(text, file_name, own, mass_model, study, draft);
+  bound_survey(draft);
   return std::move(draft.model);
 }
 

@@ -142,6 +142,47 @@ void read_sharing(const ConfigValue& table, bool has_cables, MechanismDraft& dra
   }
 }
 
+/// Adds constraints that follow from the balance of forces along an axis of a translation: some cable has to pull
+/// against the load and, without a load, not all cables that pull can pull to the same side. They bound the pose
+/// without a limit of the cables' lengths. There must be no drives without tensions.
+/// @param closure  true: the tensions balance each other, without loads
+void add_reach_of_cables(const std::vector<LoadSet>& loads, bool closure, MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  const auto greater = [](const Term& a, const Term& b) { return call(expression::operation("max"), a, b); };
+  const auto magnitude = [](const Term& a) { return call(expression::operation("abs"), a); };
+  const Term none = draft.zero();
+  // positive if not all tensions can be 0
+  Term pull = closure ? Term(model.graph, 1.0) : none;
+  for (const NamedLimb& limb : draft.limbs) pull = pull + (*limb.tension)[0];
+  for (std::size_t i = 0; i < model.inputs.coordinates; ++i)
+    if (model.translation_axes[i]) pull = pull + magnitude(loads.front().centre[i]);
+  for (std::size_t i = 0; i < model.inputs.coordinates; ++i) {
+    if (!model.translation_axes[i]) continue;
+    const std::size_t axis = *model.translation_axes[i];
+    const expression::Node coordinate =
+        model.graph.input(model.inputs.coordinate(i), generic::Inputs::coordinate_group(i));
+    std::optional<std::array<Term, 2>> farthest;  // largest distance from a joint on the base, along -axis and +axis
+    bool is_translation = true;
+    for (const NamedLimb& limb : draft.limbs) {
+      const Vector3 v = limb.points.at("B") - limb.points.at("A");
+      for (std::size_t k = 0; k < 3; ++k)
+        is_translation = is_translation &&
+                         model.term(expression::derivative(model.graph, v[k].node(), coordinate)).is(k == axis ? 1 : 0);
+      const std::array<Term, 2> ends = {none - v[axis], v[axis]};
+      farthest = farthest ? std::array{greater((*farthest)[0], ends[0]), greater((*farthest)[1], ends[1])} : ends;
+    }
+    if (!is_translation) continue;
+    for (const LoadSet& set : loads) {
+      Term half = none;
+      for (const auto& axes : set.half_axes) half = half + magnitude(axes[i]);
+      const bool is_free = closure || (set.centre[i].is(0) && half.is(0));
+      const Term up = is_free ? pull : set.centre[i] - half, down = is_free ? pull : none - set.centre[i] - half;
+      model.reach_constraints.push_back(greater((*farthest)[0], none - up).node());
+      model.reach_constraints.push_back(greater((*farthest)[1], none - down).node());
+    }
+  }
+}
+
 }  // namespace
 
 void read_tension(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft) {
@@ -181,8 +222,9 @@ void add_forces(const ConfigValue& root, const ConfigValue* study, MechanismDraf
     model.tensions.push_back(tension ? std::optional(std::array{(*tension)[0].node(), (*tension)[1].node()})
                                      : std::nullopt);
   const auto kinematics = generic::first_order_kinematics(model);
+  const std::vector<LoadSet> loads = Loads(table, draft).sets();
   const generic::TensionBalance balance =
-      generic::tension_balance(kinematics.J, kinematics.translation, tensions, Loads(table, draft).sets());
+      generic::tension_balance(kinematics.J, kinematics.translation, tensions, loads);
   const auto add = [&](const char* name, const char* unit, const Term& value, const char* meaning) {
     add_predefined_quantity(root, study, {name, unit, meaning, value}, draft);
   };
@@ -194,6 +236,7 @@ void add_forces(const ConfigValue& root, const ConfigValue* study, MechanismDraf
     add("wrench_capacity", "N", *balance.capacity,
         "largest force in every direction at the platform that the cables balance in addition to all loads");
   const bool closure = table && table->word_at("cables") == "wrench-closure";
+  if (cables == joints) add_reach_of_cables(loads, closure, draft);
   model.margins.push_back(closure ? generic::Result{"wrench-closure", "1", balance.factor.node()}
                                   : generic::Result{"wrench-feasible", "N", balance.reserve.node()});
   draft.scope.mark_as_defined(model.margins.back().node);

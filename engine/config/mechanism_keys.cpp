@@ -193,7 +193,7 @@ const TableSpec& survey_table() {
       .keys = {texts_key("sweep", "swept coordinates, one to three; default: the first three"),
                table_key("fixed", fixed,
                          "default values of coordinates, for analyses that fix them; default: the middle of the box"),
-               table_key("box", ranges, "search box; default: the reach of the limbs, and a full rotation"),
+               table_key("box", ranges, "search box; default: computed for each design, contains every feasible pose"),
                table_key("reach", ranges, "ranges that contain every pose the mechanism can reach"),
                texts_key("columns_along", "coordinates along which columns run, the preferred one first")}};
   return spec;

@@ -64,8 +64,9 @@ std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::stri
 std::vector<LimbPart> read_parts(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 /// Adds the links of a limb, which are drawn and tested for clearance, if its table has the key `radius`.
 void add_limb_links(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
-/// Adds the ranges of x, y, z to which the limb's reach restricts the origin of the platform's frame: a box around A,
-/// or around the rail. If the reach is unknown, they are std::nullopt.
+/// Adds the constraints that the limb spans the distance of its end B from A, from the line of its slider, or from the
+/// middle of its rail, and the range of a crank's angle without inverse functions. Both follow from the other
+/// constraints, but are easier to contract.
 void add_reach(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 
 /// Reads a [[limb]] with drive = "formula", whose joint coordinates are formulas of the pose.

@@ -64,7 +64,6 @@ void read_formula_limb(const ConfigValue& table, const std::string& name, Mechan
                          .parts = {},
                          .joint = draft.model.joints.size() - variables.size(),
                          .joint_count = variables.size()});
-  draft.reaches.emplace_back();
 }
 
 }  // namespace pkm

@@ -70,27 +70,29 @@ void add_limb_links(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb
 }
 
 void add_reach(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
-  std::array<std::optional<std::array<Term, 2>>, 3>& reach = copy.draft.reaches.emplace_back();
-  const ConfigValue& table = copy.table;
-  const bool has_range = table.has("range");
-  const bool on_rail = copy.drive == "slider";
-  std::optional<Term> far = limb.max_distance;
-  if (copy.drive == "telescope" && has_range) far = copy.range("m")[1];
-  if (!far || at.across || table.has("end") || (on_rail && (!has_range || table.has("links")))) return;
-  if (copy.moves() || nodes(copy.platform.at.origin) != nodes(copy.draft.origin)) return;
-  const Vector3 arm = copy.draft.scope.point(table.at("platform", "a point"), copy.group);
-  const Term round = *far + limbs::length(arm);
-  for (std::size_t i = 0; i < 3; ++i) {
-    Term low = at.A[i], high = at.A[i];
-    if (on_rail) {
+  if (!limb.max_distance) return;
+  Vector3 v = at.B - at.A;
+  Term far = *limb.max_distance;
+  if (at.across) v = v - *at.across * dot(v, *at.across);
+  if (copy.drive == "slider") {
+    if (copy.table.has("range") && !copy.table.has("links")) {
       const auto [from, to] = copy.range("m");
-      const Term a = (*limb.e)[i] * from, b = (*limb.e)[i] * to;
-      low = low + call(expression::operation("min"), a, b);
-      high = high + call(expression::operation("max"), a, b);
+      v = v - *limb.e * ((from + to) * 0.5);
+      far = far + (to - from) * 0.5;
+    } else {
+      v = cross(v, *limb.e);
     }
-    reach[i] = {low - round, high + round};
   }
-  copy.draft.scope.mark_as_defined(round.node());
+  std::vector<expression::Node>& constraints = copy.draft.model.reach_constraints;
+  constraints.push_back((far * far - dot(v, v)).node());
+  if (!limb.arm || copy.drive != "crank" || !copy.table.has("range")) return;
+  // The range of the crank's angle about its middle, without inverse functions, which are discontinuous.
+  const auto [from, to] = copy.range("rad");
+  const Term middle = (from + to) * 0.5;
+  const Term half = call(expression::operation("min"), (to - from) * 0.5, Term(copy.draft.model.graph, kPi));
+  const Vector3 zero = copy.direction(copy.table.at("zero", "a direction"));
+  const Vector3 to_middle = zero * cos(middle) + cross(*limb.e, zero) * sin(middle);
+  constraints.push_back((dot(limb.arm->arm, to_middle) - copy.length("crank", "a length") * cos(half)).node());
 }
 
 }  // namespace pkm

@@ -48,9 +48,11 @@ class RandomPoses {
       inputs_[model.inputs.limit(i)] =
           model.limit_parameters[i] ? inputs_[*model.limit_parameters[i]] : model.info.limits[i].inactive;
     for (std::size_t i = 0; i < model.inputs.signs; ++i) inputs_[model.inputs.sign(i)] = model.signs.front()[i];
-    for (const auto& range : model.box) {
+    for (std::size_t i = 0; i < model.box.size(); ++i) {
+      const auto& range = model.box[i];
       std::array<double, 2> ends = {-1, 1};
-      if (range) std::ranges::transform(*range, ends.begin(), [&](Node node) { return values({node}).front(); });
+      if (range && !model.is_contracted[i])
+        std::ranges::transform(*range, ends.begin(), [&](Node node) { return values({node}).front(); });
       const bool usable = ends[0] <= ends[1] && std::isfinite(ends[1] - ends[0]);
       box_.push_back(usable ? ends : std::array{-1.0, 1.0});
     }

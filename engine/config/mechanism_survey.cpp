@@ -1,10 +1,12 @@
 // Reads [survey]: the swept coordinates, the search box, and the default values of the fixed coordinates.
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
+#include "engine/generic/contracted_box.hpp"
 
 namespace pkm {
 
@@ -38,12 +40,17 @@ void read_ranges(const ConfigValue& survey, const char* key, MechanismDraft& dra
   }
 }
 
+expression::Node middle_of(generic::Model& model, const std::array<expression::Node, 2>& range) {
+  return ((model.term(range[0]) + model.term(range[1])) * 0.5).node();
+}
+
 }  // namespace
 
 void read_survey(const ConfigValue& root, MechanismDraft& draft) {
   generic::Model& model = draft.model;
   const std::size_t count = model.inputs.coordinates;
   model.box.resize(count);
+  model.is_contracted.resize(count);
   model.reach.resize(count);
   model.default_values.resize(count);
   std::vector<int> swept, columns_along;
@@ -74,34 +81,42 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
         columns_along.push_back(coordinate_named(each, model.info));
     }
   }
-  // Default ranges: full rotations for angles; for lengths, the range within the reach of all limbs whose reach is
-  // known.
+  // Default ranges: a full rotation for an angle beside a box; otherwise that of the feasible poses.
+  const bool has_box = survey && survey->has("box");
   for (std::size_t i = 0; i < count; ++i) {
-    if (!model.box[i] && model.rotation_axes[i]) model.box[i] = {model.graph.number(-kPi), model.graph.number(kPi)};
-    if (!model.box[i])
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (draft.origin[axis].node() != model.graph.input(model.inputs.coordinate(i))) continue;
-        std::optional<std::array<Term, 2>> common;
-        for (const auto& reach : draft.reaches)
-          if (reach[axis])
-            common = common ? std::array{call(expression::operation("max"), (*common)[0], (*reach[axis])[0]),
-                                         call(expression::operation("min"), (*common)[1], (*reach[axis])[1])}
-                            : *reach[axis];
-        const auto of_design = [&](const Term& t) { return (model.graph[t.node()].groups & ~Inputs::kDesign) == 0; };
-        if (common && of_design((*common)[0]) && of_design((*common)[1]))
-          model.box[i] = {(*common)[0].node(), (*common)[1].node()};
-      }
-    if (!model.default_values[i] && model.box[i])
-      model.default_values[i] = ((model.term((*model.box[i])[0]) + model.term((*model.box[i])[1])) * 0.5).node();
+    const bool is_angle = model.rotation_axes[i].has_value();
+    if (!model.box[i] && is_angle && has_box) model.box[i] = {model.graph.number(-kPi), model.graph.number(kPi)};
+    if (!model.box[i]) {
+      model.is_contracted[i] = true;
+      model.box[i] = {model.graph.input(model.inputs.range_end(i, 0), Inputs::kDesign),
+                      model.graph.input(model.inputs.range_end(i, 1), Inputs::kDesign)};
+      if (is_angle && !model.default_values[i]) model.default_values[i] = model.graph.number(0);
+    }
+    if (!model.default_values[i]) model.default_values[i] = middle_of(model, *model.box[i]);
   }
   model.info.sweeps = all_sweeps(model.info.coordinates, swept);
   for (Sweep& sweep : model.info.sweeps) {
     const auto along = std::ranges::find_if(
         columns_along, [&](int coordinate) { return std::ranges::find(sweep.swept, coordinate) != sweep.swept.end(); });
     if (along != columns_along.end()) sweep.column = *along;
+  }
+}
+
+void bound_survey(MechanismDraft& draft) {
+  generic::Model& model = draft.model;
+  if (std::ranges::count(model.is_contracted, true) > 0) {
+    model.contracted_box = std::make_shared<generic::ContractedBox>(model, generic::inputs_of_all_designs(model));
+    const bounds::IntervalBox box = model.contracted_box->bound(model);
+    for (std::size_t i = 0; i < model.inputs.coordinates; ++i) {
+      if (!model.is_contracted[i] || std::isfinite(box[i].width())) continue;
+      model.is_contracted[i] = false;
+      if (model.default_values[i] == middle_of(model, *model.box[i])) model.default_values[i].reset();
+      model.box[i].reset();
+    }
+  }
+  for (Sweep& sweep : model.info.sweeps)
     sweep.integrates = std::ranges::all_of(
         sweep.fixed, [&](int coordinate) { return model.box[static_cast<std::size_t>(coordinate)].has_value(); });
-  }
 }
 
 }  // namespace pkm

@@ -1,6 +1,7 @@
 #include "engine/generic/evaluation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/error.hpp"
 
@@ -31,6 +32,32 @@ std::vector<Program> programs_of(const Graph& graph, const std::vector<std::opti
   std::vector<Program> programs;
   for (const auto& ends : ranges) programs.push_back(ends ? Program(graph, {&(*ends)[side], 1}) : Program());
   return programs;
+}
+
+std::vector<double> numbers_of(std::span<const double> parameters) { return {parameters.begin(), parameters.end()}; }
+std::vector<double> numbers_of(std::span<const Dual4> parameters) {
+  std::vector<double> numbers;
+  for (const Dual4& parameter : parameters) numbers.push_back(parameter.a);
+  return numbers;
+}
+/// Writes the inputs for the ends of contracted ranges. Their derivatives are 0, because the ends are rounded.
+template <class S>
+void write_range_ends(const Model& model, const bounds::IntervalBox& box, std::span<S> inputs) {
+  for (std::size_t i = 0; i < model.inputs.coordinates; ++i) {
+    inputs[model.inputs.range_end(i, 0)] = S(box[i].lower);
+    inputs[model.inputs.range_end(i, 1)] = S(box[i].upper);
+  }
+}
+bool depends_on_range_ends(const Model& model, const Program& program) {
+  return std::ranges::any_of(program.stages().front().inputs, [&](const Program::Input& input) {
+    return input.position >= model.inputs.range_end(0, 0);
+  });
+}
+
+[[noreturn]] void throw_unbounded(const Model& model, std::size_t coordinate) {
+  const std::string& name = model.info.coordinates[coordinate].name;
+  throw DesignError("mechanism " + model.info.name + " has no [survey] box for " + name +
+                    ", and its limbs do not bound it; " + advice_for_box(name));
 }
 
 }  // namespace
@@ -134,6 +161,10 @@ void Evaluation::fill_inputs(std::span<const S> parameters, const WorkspacePlan&
     if (!value) throw_no_default_value(model.info, coordinate);
     values[model.inputs.coordinate(i)] = *value;
   }
+  const auto is_integrated = [](const FixedCoordinate& fixed) { return fixed.kind == Kind::integrated; };
+  if (!model.contracted_box || (plan.box() && std::ranges::none_of(plan.fixed, is_integrated))) return;
+  const bounds::IntervalBox box = contract(numbers_of(parameters), plan.limits, mode, &plan);
+  write_range_ends<S>(model, box, values);
 }
 
 template <class S>
@@ -147,6 +178,9 @@ std::optional<S> Evaluation::of_design(const Program& program, std::span<const S
       values[at.limit(i)] =
           model.limit_parameters[i] ? parameters[*model.limit_parameters[i]] : S(model.info.limits[i].inactive);
     for (std::size_t i = 0; i < at.signs; ++i) values[at.sign(i)] = S(model.signs.front()[i]);
+    if constexpr (std::is_same_v<S, double> || std::is_same_v<S, Dual4>)
+      if (model.contracted_box && depends_on_range_ends(model, program))
+        write_range_ends<S>(model, contract(numbers_of(parameters), no_limits(model.info), 0, nullptr), values);
     program.run_all<S>(values, registers);
     return std::optional<S>(registers[program.outputs().front()]);
   });
@@ -154,6 +188,11 @@ std::optional<S> Evaluation::of_design(const Program& program, std::span<const S
 
 std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> parameters, const LimitSpec& limits,
                                                        std::size_t mode, std::size_t coordinate) const {
+  if (model.is_contracted[coordinate]) {
+    const Interval range = contract(parameters, limits, mode, nullptr)[coordinate];
+    if (!std::isfinite(range.width())) return {};
+    return {{range.lower, range.upper}};
+  }
   const auto end = [&](const Program& program) -> std::optional<double> {
     if (program.outputs().empty()) return {};
     return with_scratch<double>(model.inputs.count() + program.registers(), [&](std::span<double> scratch) {
@@ -168,11 +207,58 @@ std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> p
   return {{*from, *to}};
 }
 
-std::array<double, 2> Evaluation::required_range(std::span<const double> parameters, const LimitSpec& limits,
+std::array<double, 2> Evaluation::required_range(std::span<const double> parameters, const WorkspacePlan& plan,
                                                  std::size_t mode, std::size_t coordinate) const {
-  if (const auto known = range(parameters, limits, mode, coordinate)) return *known;
-  throw DesignError("mechanism " + model.info.name + " has no [survey] box for " +
-                    model.info.coordinates[coordinate].name + "; give a box");
+  if (model.is_contracted[coordinate]) {
+    const Interval range = contract(parameters, plan.limits, mode, &plan)[coordinate];
+    if (!std::isfinite(range.width())) throw_unbounded(model, coordinate);
+    return {range.lower, range.upper};
+  }
+  if (const auto known = range(parameters, plan.limits, mode, coordinate)) return *known;
+  throw_unbounded(model, coordinate);
+}
+
+bounds::IntervalBox Evaluation::contract(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
+                                         const WorkspacePlan* plan) const {
+  const std::vector<Interval> design(parameters.begin(), parameters.end());
+  std::vector<Interval> inputs(model.inputs.count());
+  fill_inputs<Interval>(design, limits, mode, inputs);
+  bounds::IntervalBox start;
+  const auto range_of = [](const std::optional<std::array<double, 2>>& ends) {
+    return ends ? std::optional(Interval((*ends)[0], (*ends)[1])) : std::nullopt;
+  };
+  for (std::size_t i = 0; i < model.inputs.coordinates; ++i) {
+    std::optional<Interval> given;
+    if (!model.is_contracted[i]) {
+      given = range_of(range(parameters, limits, mode, i));
+    } else if (const auto from = of_design<double>(reach_lower[i], parameters)) {
+      given = Interval(*from, *of_design<double>(reach_upper[i], parameters));
+    }
+    start[i] = given.value_or(widest_range(model, i));
+  }
+  if (plan) {
+    const Sweep& sweep = sweep_of(model.info, *plan);
+    if (const auto& box = plan->box())
+      for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
+        start[static_cast<std::size_t>(sweep.swept[axis])] = {(*box)[axis][0], (*box)[axis][1]};
+    for (const int coordinate : sweep.fixed) {
+      const auto i = static_cast<std::size_t>(coordinate);
+      const FixedCoordinate fixed = how_fixed(*plan, coordinate);
+      if (fixed.kind == FixedCoordinate::Kind::integrated) continue;
+      if (fixed.kind == FixedCoordinate::Kind::listed) {
+        const auto [from, to] = std::ranges::minmax(fixed.values);
+        start[i] = {from, to};
+      } else if (fixed.kind == FixedCoordinate::Kind::value) {
+        start[i] = fixed.value;
+      } else if (const auto value = of_design<double>(default_values[i], parameters)) {
+        start[i] = *value;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < model.inputs.coordinates; ++i)
+    if (!(start[i].lower <= start[i].upper)) return start;  // an empty range, in which no pose is feasible
+  if (model.contracted_box->covers(inputs)) return model.contracted_box->find(inputs, start);
+  return ContractedBox(model, inputs).find(inputs, start);
 }
 
 Box Evaluation::search_box(std::span<const double> parameters, const WorkspacePlan& plan, std::size_t mode,
@@ -181,7 +267,7 @@ Box Evaluation::search_box(std::span<const double> parameters, const WorkspacePl
   Box box;
   box.fill({0, 1});
   for (std::size_t axis = 0; axis < swept.size(); ++axis)
-    box[axis] = required_range(parameters, plan.limits, mode, static_cast<std::size_t>(swept[axis]));
+    box[axis] = required_range(parameters, plan, mode, static_cast<std::size_t>(swept[axis]));
   return box;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/expression/batch_stage.hpp"
+#include "engine/generic/contracted_box.hpp"
 #include "engine/generic/model.hpp"
 #include "engine/mechanism/plan.hpp"
 
@@ -55,16 +56,22 @@ struct Evaluation {
   /// Value of a program that depends on the design only, in the default working mode; std::nullopt if it has no output.
   template <class S>
   std::optional<S> of_design(const expression::Program& program, std::span<const S> parameters) const;
-  /// Range of a coordinate in the search box of the file; std::nullopt if the file does not define it.
+  /// Range of a coordinate in the search box; std::nullopt if neither the file nor the constraints bound it.
   std::optional<std::array<double, 2>> range(std::span<const double> parameters, const LimitSpec& limits,
                                              std::size_t mode, std::size_t coordinate) const;
-  /// Like range(), but throws std::invalid_argument with a message if the file does not define the range.
-  std::array<double, 2> required_range(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
+  /// Range of a coordinate for a workspace analysis; throws DesignError if it is unknown.
+  std::array<double, 2> required_range(std::span<const double> parameters, const WorkspacePlan& plan, std::size_t mode,
                                        std::size_t coordinate) const;
   /// Search box of a workspace analysis, by axis: the box of the plan or, if it has none, the ranges of the swept
   /// coordinates.
   Box search_box(std::span<const double> parameters, const WorkspacePlan& plan, std::size_t mode,
                  const std::vector<int>& swept) const;
+
+ private:
+  /// A box that contains all feasible poses, for models with contracted coordinates.
+  /// @param plan  plan with the values of the fixed coordinates; null: no coordinate is fixed
+  bounds::IntervalBox contract(std::span<const double> parameters, const LimitSpec& limits, std::size_t mode,
+                               const WorkspacePlan* plan) const;
 };
 
 /// Calls work(scratch) with scratch memory for `count` scalars, which is on the stack if `count` is small.

@@ -21,7 +21,7 @@ using expression::Node;
 /// Layout of the graph's inputs, in this order: parameters, thresholds of limits and signs of the working mode (one
 /// group); coordinates (one group each); joints, as variables of the loop-closure equations; rates of the coordinates;
 /// extra inputs, on which only quantities depend, and their rates; accelerations of the coordinates and of the extra
-/// inputs.
+/// inputs; ends of the ranges of contracted coordinates (in the group of the parameters).
 struct Inputs {
   std::size_t parameters = 0, limits = 0, signs = 0, coordinates = 0, joints = 0, extras = 0;
 
@@ -38,7 +38,9 @@ struct Inputs {
   std::size_t extra_rate(std::size_t i) const { return extra(kMaxExtras) + i; }
   std::size_t acceleration(std::size_t i) const { return extra_rate(kMaxExtras) + i; }
   std::size_t extra_acceleration(std::size_t i) const { return acceleration(coordinates) + i; }
-  std::size_t count() const { return extra_acceleration(kMaxExtras); }
+  /// Lower (side 0) or upper (side 1) end of the range that ContractedBox computes for a coordinate.
+  std::size_t range_end(std::size_t i, std::size_t side) const { return extra_acceleration(kMaxExtras) + 2 * i + side; }
+  std::size_t count() const { return range_end(coordinates, 0); }
 };
 
 /// A named value of a pose or of a design.
@@ -256,6 +258,8 @@ struct EquationNodes {
   std::vector<Node> J, J_rate_X, M_X, h_X, G_X, J_wrench;
 };
 
+class ContractedBox;
+
 /// A mechanism as described by its file. Constraints are satisfied if they are >= 0. Vectors are in the base frame.
 struct Model {
   MechanismInfo info;
@@ -311,8 +315,14 @@ struct Model {
   std::vector<std::optional<std::size_t>> limit_parameters;
 
   // workspace analysis, by coordinate
-  /// Range of each coordinate that a workspace analysis searches; std::nullopt if the file does not define it.
+  /// Range of each coordinate that a workspace analysis searches; std::nullopt if neither the file nor the constraints
+  /// bound it.
   std::vector<std::optional<std::array<Node, 2>>> box;
+  /// By coordinate, whether its range is computed by contraction of the constraints; `box` is then Inputs::range_end().
+  std::vector<bool> is_contracted;
+  std::shared_ptr<const ContractedBox> contracted_box;  ///< null if no coordinate is contracted
+  /// Constraints >= 0 on the distances that the limbs can span, which follow from the other ones.
+  std::vector<Node> reach_constraints;
   /// Range of each coordinate outside of which no pose is feasible; std::nullopt if the file does not define it.
   std::vector<std::optional<std::array<Node, 2>>> reach;
   /// Value of each coordinate where an analysis fixes it by default; std::nullopt if the file does not define it.

@@ -79,7 +79,7 @@ class GenericVoxels final : public GridEvaluator<GenericVoxels> {
     find_fixed_cells(
         sweep_.fixed, plan_,
         [&](int coordinate) {
-          return e_.required_range(parameters, plan_.limits, mode_, static_cast<std::size_t>(coordinate));
+          return e_.required_range(parameters, plan_, mode_, static_cast<std::size_t>(coordinate));
         },
         common.fixed);
     e_.fill_inputs<double>(parameters, plan_, mode_, common.inputs);

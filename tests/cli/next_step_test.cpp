@@ -125,8 +125,8 @@ branch   = "-"
   for (const char* idle : {"width", "paint", "cover", "weight"}) EXPECT_THAT(output_, Not(HasSubstr(idle)));
 }
 
-TEST_F(CliNextStep, NewStudyOfAMechanismWithoutSearchBoxIsRefused) {
-  std::ifstream file(PKM_EXPERIMENTS "/mechanisms/3-rrr.toml");
+TEST_F(CliNextStep, NewStudyOfAMechanismWithUnboundedCoordinateIsRefused) {
+  std::ifstream file(PKM_EXPERIMENTS "/mechanisms/cables/cogiro.toml");
   std::string text{std::istreambuf_iterator<char>(file), {}};
   const auto begin = text.find("[survey"), end = text.find("\n[[limb]]", begin);
   ASSERT_NE(begin, std::string::npos);
@@ -135,7 +135,10 @@ TEST_F(CliNextStep, NewStudyOfAMechanismWithoutSearchBoxIsRefused) {
     std::vector<std::string> arguments = {"new", "study", "m.toml"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_EQ(run(arguments), 2);
-    EXPECT_EQ(output_, "pkmopt: m.toml: mechanism 3-rrr has no [survey] box for x; give a box\n");
+    EXPECT_EQ(
+        output_,
+        "pkmopt: m.toml: mechanism cogiro has no [survey] box for z, and its limbs do not bound it; give [survey] "
+        "box = { z = [from, to] }, or limit the drives by `range`\n");
   }
   EXPECT_FALSE(fs::exists(path("new.toml")));
 }
