@@ -12,6 +12,7 @@
 #include "engine/config/study_draft.hpp"
 #include "engine/config/study_keys.hpp"
 #include "engine/core/unit.hpp"
+#include "engine/problem/tied_parameters.hpp"
 
 namespace pkm {
 namespace {
@@ -100,6 +101,28 @@ Variable recorded_variable(const StudyDraft& draft, const Variable& of_text, con
   return of_text;
 }
 
+/// Ties the copies of a common parameter that have values of their own in the mechanism file to its variable, unless
+/// they vary or are fixed in the study.
+void tie_copies(const ConfigValue& variables, const std::optional<ConfigValue>& fixed, const ConfigValue& tie,
+                const Variable& variable, std::size_t common, StudyDraft& draft) {
+  const auto& known = draft.info().parameters;
+  if (limb_parameter(variable.name, tie.place()))
+    throw tie.refusal(variable.name +
+                      " is a single copy; the key belongs to the common parameter, or to a pattern such as "
+                      "\"arm*.l_b\"");
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto own = limb_parameter(known[i].name, tie.place());
+    if (!own || own->parameter != variable.name || variables.has(known[i].name) || (fixed && fixed->has(known[i].name)))
+      continue;
+    if (variable.lower < known[i].lower || variable.upper > known[i].upper)
+      throw tie.refusal("the mechanism file restricts " + known[i].name + " to " +
+                        format_range(known[i].lower, known[i].upper, known[i].unit) + "; expected bounds of " +
+                        variable.name + " within this range");
+    draft.parts.copies.push_back({i, common});
+  }
+  apply_ties(draft.parts, draft.parts.parameters);
+}
+
 void warn_of_lattice_end(const DesignSpace& space, std::vector<std::string>& warnings) {
   for (std::size_t i = 0; i < space.dimension(); ++i) {
     const Variable& v = space[i];
@@ -186,6 +209,8 @@ void read_variables(const ConfigValue& root, StudyDraft& draft) {
       const auto i = static_cast<std::size_t>(find_named(known, key) - known.data());
       variables.push_back(recorded_variable(draft, read_variable(entry, known[i]), known[i]));
       draft.parts.varies.push_back(i);
+      if (const auto tie = entry.find("tie"); tie && tie->flag())
+        tie_copies(*table, fixed, *tie, variables.back(), i, draft);
       nominal[i] = std::clamp(nominal[i], variables.back().lower, variables.back().upper);
     }
   }
@@ -205,6 +230,8 @@ void read_baseline(const ConfigValue& root, StudyDraft& draft) {
   read_parameters(*table, draft.info().parameters, values);
   apply_common_parameters(
       draft, [&](const std::string& name) { return table->has(name) || !root.find("variables")->has(name); }, values);
+  for (const auto& [own, common] : draft.parts.copies)
+    if (!table->has(draft.info().parameters[own].name)) values[own] = values[common];
   if (const Unsupported reason = draft.parts.mechanism->refuse(values)) throw table->refusal(*reason);
   draft.study.baseline = std::move(values);
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "engine/config/choices.hpp"
+#include "engine/config/limb_patterns.hpp"
 #include "engine/config/mechanism_file.hpp"
 #include "engine/config/study_additions.hpp"
 #include "engine/config/study_draft.hpp"
@@ -202,7 +203,7 @@ void check_rows(const Study& study, const SourceLocation& place) {
     }
 }
 
-Study read_document(const StudySource& source, const Catalogues& catalogues) {
+Study read_document(StudySource source, const Catalogues& catalogues) {
   const TomlValue& document = source.document;
   const std::string& file_name = source.text.file_name;
   if (document.keys.empty())
@@ -210,6 +211,7 @@ Study read_document(const StudySource& source, const Catalogues& catalogues) {
   if (describes_mechanism(document))
     throw ConfigError({file_name, 0, ""}, "a mechanism file",
                       "a study, which refers to this file by [mechanism] file = \"..\"");
+  source.document = with_limb_patterns(document, file_name, source.description);
   const auto find_catalogue = [&](const ConfigValue& file) {
     if (const auto recorded = recorded_catalogue(document, file.text("the name of a catalogue's file")))
       return *recorded;

@@ -67,7 +67,12 @@ const TableSpec& variables_table() {
                {.name = "step",
                 .unit = kUnitOfEntry,
                 .meaning = "makes the variable discrete: min + k step",
-                .positive = true}}};
+                .positive = true},
+               {.name = "tie",
+                .kind = OptionKind::flag,
+                .initial = false,
+                .meaning = "one value for all limbs, also for those with a value of their own in the mechanism file; "
+                           "a pattern such as \"arm*.l_b\" without it stands for one variable per limb"}}};
   static const TableSpec choice = {
       .meaning = "a choice from a catalogue",
       .keys = {{.name = "from",

@@ -309,7 +309,7 @@ void read_tolerances(const ConfigValue& root, const std::function<void(StudyDraf
     if (!has_statistic(parts.objectives) && !has_statistic(parts.workspace_margins) && !has_statistic(parts.reports))
       return;
     ProblemParts sampled = sampled_problem(std::move(machine.parts), parts);
-    sampled.copies = model.copies;
+    std::ranges::copy(model.copies, std::back_inserter(sampled.copies));
     parts.built = std::make_shared<const BuiltMachines>(
         BuiltMachines{model, std::make_shared<const DesignProblem>(std::move(sampled))});
   });

@@ -10,6 +10,7 @@
 #include "engine/core/catalogue.hpp"
 #include "engine/core/error.hpp"
 #include "engine/problem/design_problem_buffers.hpp"
+#include "engine/problem/tied_parameters.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
@@ -98,6 +99,7 @@ Unsupported DesignProblem::why_no_derivatives() const {
 std::vector<double> DesignProblem::parameters(std::span<const double> design) const {
   std::vector<double> all = parts_.parameters;
   for (std::size_t i = 0; i < design.size(); ++i) all[parts_.varies[i]] = design[i];
+  apply_ties(parts_, all);
   if (const DesignProblem& other = of(all); &other != this) return other.parameters(design);
   return all;
 }
@@ -226,6 +228,7 @@ void DesignProblem::evaluate(std::span<const double> design, Scratch& scratch, E
   try {
     all.assign(parts_.parameters.begin(), parts_.parameters.end());
     for (std::size_t i = 0; i < design.size(); ++i) all[parts_.varies[i]] = design[i];
+    apply_ties(parts_, all);
     if (const DesignProblem& other = of(all); &other != this)
       return other.evaluate(design, scratch.get<ScratchOfRows>().of[&other], result);
     result.status = compute(all, scratch, result);

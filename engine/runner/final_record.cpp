@@ -8,7 +8,7 @@
 #include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/largest_solid_options.hpp"
-#include "engine/results/active_constraints.hpp"
+#include "engine/problem/tied_parameters.hpp"
 #include "engine/runner/design_record.hpp"
 #include "engine/runner/exact_values.hpp"
 #include "engine/runner/progress.hpp"
@@ -181,6 +181,7 @@ FinalRecord final_record(const Study& study, const StudyContents& contents) {
   if (study.round) {
     auto rounded = best;
     for (const std::size_t i : parts.varies) rounded[i] = rounded_to(best[i], *study.round);
+    apply_ties(parts, rounded);
     f.rounded = evaluate_design_after_rounding(problem, rounded);
   }
   return f;

@@ -267,6 +267,9 @@ Target find_target(const Session& session, const DesignArguments& given_argument
   const auto given = parse_assignments(arguments.set, "--set", assignable_parameters(target.info()));
   for (std::size_t i = 0; i < given.size(); ++i)
     if (given[i]) target.parameters[i] = *given[i];
+  if (target.study)
+    for (const auto& [own, common] : target.study->problem->parts().copies)
+      if (given[common] && !given[own]) target.parameters[own] = target.parameters[common];
   if (!arguments.set.empty()) {
     target.words += " with " + join(arguments.set);
     target.file_name += "-changed";
