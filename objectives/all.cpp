@@ -10,6 +10,7 @@ namespace pkm {
 const std::vector<ObjectiveEntry>& all_objectives() {
   static const std::vector<ObjectiveEntry> list = [] {
     std::vector<ObjectiveEntry> all = {workspace_volume(), workspace_ratio()};
+    all.push_back(orientation_workspace());
     std::ranges::copy(largest_solid_objectives(), std::back_inserter(all));
     std::ranges::copy(pose_objectives(), std::back_inserter(all));
     all.push_back(quantity_objective());

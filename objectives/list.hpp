@@ -7,6 +7,7 @@ namespace pkm {
 
 ObjectiveEntry workspace_volume();
 ObjectiveEntry workspace_ratio();
+ObjectiveEntry orientation_workspace();                  ///< orientations that are feasible at a point
 std::vector<ObjectiveEntry> pose_objectives();           ///< statistics of the built-in pose quantities
 ObjectiveEntry quantity_objective();                     ///< any statistic of any pose quantity
 std::vector<ObjectiveEntry> peak_objectives();           ///< maximum forces, power, speeds, .. along a motion

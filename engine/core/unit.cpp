@@ -31,7 +31,7 @@ struct Symbol {
 
 constexpr Dimension kNone{0, 0, 0, 0}, kLength{1, 0, 0, 0}, kMass{0, 1, 0, 0}, kTime{0, 0, 1, 0}, kAngle{0, 0, 0, 1},
     kForce{1, 1, -2, 0}, kEnergy{2, 1, -2, 0}, kPower{2, 1, -3, 0}, kAngularSpeed{0, 0, -1, 1}, kPressure{-1, 1, -2, 0},
-    kFrequency{0, 0, -1, 0};
+    kFrequency{0, 0, -1, 0}, kSolidAngle{0, 0, 0, 2};
 
 constexpr Symbol kSymbols[] = {
     {"%", {kNone, 1, 100}},
@@ -67,6 +67,7 @@ constexpr Symbol kSymbols[] = {
     {"MPa", {kPressure, 1e6, 1}},
     {"GPa", {kPressure, 1e9, 1}},
     {"Hz", {kFrequency, 1, 1}},
+    {"sr", {kSolidAngle, 1, 1}},
 };
 
 /// Returns true if a byte may be part of a unit symbol. This includes all bytes of non-ASCII characters, such as the

@@ -14,6 +14,7 @@
 #include "engine/generic/elastostatics.hpp"
 #include "engine/generic/equations.hpp"
 #include "engine/generic/forward.hpp"
+#include "engine/generic/haar_measure.hpp"
 #include "engine/generic/kinematics.hpp"
 #include "engine/generic/mobility.hpp"
 #include "engine/generic/newton_euler.hpp"
@@ -35,6 +36,7 @@ namespace {
 class GenericMechanism final : public Mechanism,
                                public TotalMass,
                                public DesignFacts,
+                               public WithOrientations,
                                public OrderedMargins,
                                public LimitedDrives,
                                public std::enable_shared_from_this<GenericMechanism>,
@@ -98,6 +100,12 @@ class GenericMechanism final : public Mechanism,
   }
   void thresholds(std::span<const Dual4> parameters, const LimitSpec& limits, std::span<Dual4> values) const override {
     e_.thresholds(parameters, limits, values);
+  }
+
+  Unsupported why_no_orientations() const override { return HaarMeasure::refusal(e_.model); }
+  std::unique_ptr<const Orientations> orientations() const override {
+    if (why_no_orientations()) return nullptr;
+    return std::make_unique<HaarMeasure>(e_.model);
   }
 
   const Voxels* voxels() const override { return this; }

@@ -9,6 +9,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/problem/largest_solid_options.hpp"
 #include "engine/problem/tied_parameters.hpp"
+#include "engine/results/active_constraints.hpp"
 #include "engine/runner/design_record.hpp"
 #include "engine/runner/exact_values.hpp"
 #include "engine/runner/progress.hpp"

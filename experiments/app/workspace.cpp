@@ -12,6 +12,7 @@
 #include "engine/generic/exact_accuracy.hpp"
 #include "engine/math/rounding.hpp"
 #include "engine/mechanism/availability.hpp"
+#include "engine/mechanism/orientations.hpp"
 #include "engine/report/html_page.hpp"
 #include "engine/storage/safe_file.hpp"
 #include "engine/workspace/pose_quantities.hpp"
@@ -182,6 +183,19 @@ std::vector<Picture> slice_pictures(const Target& target, const WorkspaceFields&
   return pictures;
 }
 
+/// Haar measure of the feasible orientations, if the axes of the workspace are the three angles of the platform.
+std::optional<double> orientation_measure(const Target& target, const WorkspaceFields& workspace) {
+  const auto orientations = orientations_of(*target.mechanism);
+  if (!orientations) return {};
+  std::vector<int> swept;
+  for (const WorkspaceAxis& axis : workspace.axes) swept.push_back(axis.coordinate);
+  if (swept != orientations->angles()) return {};
+  VoxelMap map = workspace.grid().map();
+  std::ranges::transform(workspace.field("feasible").values, map.feasible.begin(),
+                         [](double feasible) { return static_cast<std::uint8_t>(feasible == 1); });
+  return orientations->measure(map);
+}
+
 /// @param of_fields  the workspace whose fields are reported: `workspace` itself, or the same on a coarser grid
 void report_workspace(const Target& target, const WorkspaceFields& workspace, const WorkspaceFields& of_fields,
                       Printout& out) {
@@ -233,6 +247,10 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, co
   out.head.push_back(
       {measure_name(workspace.axes.size()),
        number(workspace.volume, workspace.volume_unit, known_digits_of_voxels(feasible, workspace.axes.size()))});
+  if (const auto measure = orientation_measure(target, workspace)) {
+    json["orientations"] = {{"measure", *measure}, {"unit", kOrientationUnit}};
+    out.head.push_back({"orientations", number(*measure, kOrientationUnit), "each counted once"});
+  }
   if (workspace.touches_box)
     out.head.push_back({"warning", "the feasible set touches the box; it may extend beyond it"});
 
