@@ -37,7 +37,8 @@ const OldStudy kOldStudies[] = {{"interrupted-schema-1", 1, "0.1.0 (259d3de3a709
                                 {"interrupted-algorithms-5", 5, "0.1.0 (eff2312a104b)", {"nsga2", "nlopt"}},
                                 {"interrupted-algorithms-6", 6, "0.1.0 (ae5686c4cc35)", {"nsga2", "nlopt"}},
                                 {"interrupted-algorithms-7", 7, "0.1.0 (4db1aebb6315+changes)", {"nsga2", "nlopt"}},
-                                {"interrupted-algorithms-8", 8, "0.1.0 (8d634649c855+changes)", {"nsga2", "nlopt"}}};
+                                {"interrupted-algorithms-8", 8, "0.1.0 (8d634649c855+changes)", {"nsga2", "nlopt"}},
+                                {"interrupted-algorithms-9", 9, "0.1.0 (ae6b4170b257)", {"nsga2", "nlopt"}}};
 
 class OldStudies : public StudyProgram, public ::testing::WithParamInterface<OldStudy> {
  protected:
