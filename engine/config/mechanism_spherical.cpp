@@ -135,7 +135,6 @@ void read_spherical_limb(const LimbCopy& copy, const std::string& joint) {
                            {copy.platform.body}});
   }
   draft.limbs.push_back(std::move(limb));
-  draft.reaches.emplace_back();
 }
 
 }  // namespace pkm
