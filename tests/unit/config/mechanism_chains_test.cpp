@@ -16,6 +16,7 @@
 #include "engine/dynamics/pose_dynamics.hpp"
 #include "engine/math/eigen_solvers.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
+#include "tests/unit/config/report_at.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 #include "tests/unit/generic/files.hpp"
 
@@ -34,11 +35,6 @@ Vector from_json(const Json& list) {
 }
 
 Robot read(const std::string& text) { return read_mechanism_toml(text, "robot.toml"); }
-
-PoseReport report_at(const Mechanism& mechanism, const Pose<double>& pose) {
-  return mechanism.inspect(test::nominal(mechanism.info()), pose, mechanism.info().modes.front(),
-                           no_limits(mechanism.info()));
-}
 
 AxisVector<double> forces_at(const Mechanism& mechanism, const MotionState<double>& state,
                              const AxisVector<double>& acceleration) {

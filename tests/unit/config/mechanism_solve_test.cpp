@@ -11,6 +11,7 @@
 #include "engine/core/team.hpp"
 #include "engine/dynamics/pose_dynamics.hpp"
 #include "engine/workspace/prepare_workspace.hpp"
+#include "tests/unit/config/report_at.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 #include "tests/unit/generic/files.hpp"
 
@@ -24,11 +25,6 @@ std::shared_ptr<const Mechanism> robot(const std::string& name) {
 }
 std::shared_ptr<const Mechanism> slider_crank() {
   return read_mechanism_toml(test::text_of_file(PKM_TEST_DATA "/keys/solve.toml"), "solve.toml");
-}
-
-PoseReport report_at(const Mechanism& mechanism, const Pose<double>& pose) {
-  return mechanism.inspect(test::nominal(mechanism.info()), pose, mechanism.info().modes.front(),
-                           no_limits(mechanism.info()));
 }
 
 Pose<double> pose_at(double x) {

@@ -6,6 +6,7 @@
 #include "engine/config/mechanism_file.hpp"
 #include "engine/core/catalogue.hpp"
 #include "engine/math/random.hpp"
+#include "tests/unit/config/report_at.hpp"
 
 namespace pkm {
 namespace {
@@ -122,12 +123,6 @@ std::vector<double> default_design(const Mechanism& mechanism) {
   std::vector<double> design;
   for (const Parameter& p : mechanism.info().parameters) design.push_back(p.nominal);
   return design;
-}
-
-PoseReport report_at(const Mechanism& mechanism, const Pose<double>& pose) {
-  const MechanismInfo& info = mechanism.info();
-  return mechanism.inspect(default_design(mechanism), pose, info.modes.empty() ? "" : info.modes.front(),
-                           no_limits(info));
 }
 
 double value_named(const NamedValues& values, const std::string& name) {
