@@ -1,5 +1,6 @@
 #include "engine/expression/program.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -52,6 +53,18 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
 
 std::span<const std::uint32_t> Program::Step::operands() const {
   return solve ? std::span<const std::uint32_t>(solve->from) : std::span<const std::uint32_t>(from.data(), count);
+}
+std::vector<Program::Step> Program::Stage::steps_for(std::vector<bool>& needed) const {
+  std::vector<Step> found;
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    const auto first = needed.begin() + step->to;
+    const auto end = first + static_cast<std::ptrdiff_t>(step->results());
+    if (std::find(first, end, true) == end) continue;
+    for (const std::uint32_t operand : step->operands()) needed[operand] = true;
+    found.push_back(*step);
+  }
+  std::ranges::reverse(found);
+  return found;
 }
 std::size_t Program::Step::results() const { return solve ? 1 + solve->system->unknowns() : 1; }
 

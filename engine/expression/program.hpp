@@ -48,6 +48,10 @@ class Program {
   struct Stage {
     std::vector<Input> inputs;  ///< inputs whose values become available in this stage
     std::vector<Step> steps;
+
+    /// The steps that compute needed registers, in the order of `steps`.
+    /// @param needed  for each register, whether its value is needed; registers that these steps read are added
+    std::vector<Step> steps_for(std::vector<bool>& needed) const;
   };
 
   Program() = default;
@@ -96,7 +100,7 @@ class Program {
   std::vector<std::pair<std::uint32_t, double>> numbers_;  ///< for each constant, its register and its value
   std::vector<std::uint32_t> outputs_;
   std::vector<int> stage_of_;
-  std::vector<std::shared_ptr<const SolveStep>> systems_;  ///< those of the steps
+  std::vector<std::shared_ptr<const SolveStep>> systems_;  ///< systems that the steps solve
   std::size_t registers_ = 0;
 };
 

@@ -70,19 +70,8 @@ Constraints::Subprogram Constraints::extract(std::size_t first_output, std::size
     subprogram.outputs.push_back(program_.outputs()[first_output + i]);
     needed[subprogram.outputs.back()] = true;
   }
-  const auto collect = [&](const Program::Stage& stage, std::vector<Program::Step>& to) {
-    for (auto step = stage.steps.rbegin(); step != stage.steps.rend(); ++step) {
-      const auto first = needed.begin() + step->to;
-      if (std::find(first, first + static_cast<std::ptrdiff_t>(step->results()), true) ==
-          first + static_cast<std::ptrdiff_t>(step->results()))
-        continue;
-      for (const std::uint32_t operand : step->operands()) needed[operand] = true;
-      to.push_back(*step);
-    }
-    std::ranges::reverse(to);
-  };
-  collect(program_.stages()[2], subprogram.last_steps);
-  collect(program_.stages()[1], subprogram.outer_steps);
+  subprogram.last_steps = program_.stages()[2].steps_for(needed);
+  subprogram.outer_steps = program_.stages()[1].steps_for(needed);
   return subprogram;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr Groups kDesignGroup = 1, kAxesGroup = 2;
 /// Maximum number of operations of the proof that a slab is infeasible, and of the bisection of the bounded box.
 constexpr std::size_t kMaxWorkOfSlab = 20'000, kMaxWork = 3'000'000;
-/// Maximum number of passes over all faces for one share of their sides.
+/// Maximum number of passes over all faces of a box in which slabs of the same share of its width are cut.
 constexpr int kMaxRounds = 16;
 /// A face of the box is final if it is this close to a feasible pose, relative to the width of the box, or if the boxes
 /// there have become this small.
@@ -36,13 +36,7 @@ FeasibleHull::FeasibleHull(Graph graph, std::vector<Node> constraints, std::vect
   for (const std::uint32_t output : program_.outputs()) {
     std::vector<bool> is_needed(program_.registers());
     is_needed[output] = true;
-    Constraint& constraint = constraints_.emplace_back(Constraint{output, {}});
-    for (auto step = stage.steps.rbegin(); step != stage.steps.rend(); ++step) {
-      if (!is_needed[step->to]) continue;
-      for (std::size_t i = 0; i < step->count; ++i) is_needed[step->from[i]] = true;
-      constraint.steps.push_back(*step);
-    }
-    std::ranges::reverse(constraint.steps);
+    constraints_.push_back({output, stage.steps_for(is_needed)});
   }
 }
 
@@ -92,7 +86,7 @@ class FeasibleHull::Search {
     return box;
   }
 
-  /// Bounding box of all boxes that are left after bisection; std::nullopt: no pose is feasible.
+  /// Bounding box of the boxes that bisection does not prove infeasible; std::nullopt: no pose is feasible.
   std::optional<IntervalBox> contract(const IntervalBox& box) {
     const std::size_t begin = work_;
     faces_.assign(2 * axes(), {});
@@ -124,7 +118,8 @@ class FeasibleHull::Search {
     for (std::size_t axis = 0; axis < axes(); ++axis)
       for (double Interval::*const end : {&Interval::lower, &Interval::upper}) work(axis, end);
   }
-  /// Moves an end of a side to `limit` if the slab between both is proven infeasible. @return true if it is
+  /// Moves an end of a box's side to `limit` if the slab between them is proven infeasible. @return true if it was
+  /// moved
   bool can_cut(IntervalBox& box, std::size_t axis, double Interval::*end, double limit) {
     IntervalBox slab = box;
     (end == &Interval::lower ? slab[axis].upper : slab[axis].lower) = limit;
@@ -218,14 +213,14 @@ class FeasibleHull::Search {
       inner_[axis] = {std::fmin(inner_[axis].lower, feasible[axis].lower),
                       std::fmax(inner_[axis].upper, feasible[axis].upper)};
   }
-  /// Whether a feasible pose is close to a face of the box of all boxes that are left.
+  /// Whether a known feasible pose is close to a face of `hull`, the bounding box of all boxes not proven infeasible.
   bool is_close(std::size_t face, const IntervalBox& hull) const {
     const Interval &outer = hull[face / 2], &inner = inner_[face / 2];
     const double distance = face % 2 == 0 ? inner.lower - outer.lower : outer.upper - inner.upper;
     return distance <= kDistance * outer.width();
   }
 
-  /// Finds the bounding box of all boxes that are left. @return false if there are none
+  /// Finds the bounding box of all boxes that are not proven infeasible. @return false if there are none
   bool find_hull(IntervalBox& hull) {
     for (std::size_t face = 0; face < faces_.size(); ++face) {
       auto& boxes = faces_[face];
@@ -245,7 +240,8 @@ class FeasibleHull::Search {
   Open all_;
   std::vector<Piece> pieces_;
   IntervalBox inner_;  ///< bounding box of the feasible poses that are known
-  /// For each face of the bounding box, the boxes that are left by their distance in its direction, with their indices.
+  /// For each face of the bounding box, a queue of boxes: how far each extends in the direction of the face, and its
+  /// index in `pieces_`.
   std::vector<std::priority_queue<std::pair<double, std::uint32_t>>> faces_;
 };
 
