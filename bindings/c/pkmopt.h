@@ -34,7 +34,7 @@ extern "C" {
 #define PKMOPT_API __attribute__((visibility("default")))
 
 #define PKMOPT_VERSION_MAJOR 0
-#define PKMOPT_VERSION_MINOR 1
+#define PKMOPT_VERSION_MINOR 2
 #define PKMOPT_VERSION_PATCH 0
 
 typedef enum pkmopt_status {
