@@ -43,7 +43,7 @@ class MinimumAlong final : public Quantity {
       std::vector<Dual4> margins;
       find_ordered_margins(design.mechanism)
           ->append_ordered(design.parameters, along_.mode, along_.limits, poses, design.scratch, margins);
-      // A margin that does not exist counts as -1, as in margins_of().
+      // A margin that does not exist (NaN) counts as -1.
       for (Dual4& margin : margins)
         if (std::isnan(margin.a)) margin = Dual4(-1.0);
       return minimum_or_unlimited(margins);

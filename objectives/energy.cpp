@@ -1,6 +1,6 @@
 // Energy of the drives over a motion, by the trapezoidal rule over its samples: of the joints (force times speed), or
-// of the motors (torque times speed) if there are drive trains. With recuperation the integral of the total power,
-// without it that of the positive powers of the single drives.
+// of the motors (torque times speed) if there are drive trains. With recuperation, it is the integral of the total
+// power; without recuperation, it is the integral of the positive powers of the single drives.
 //
 // With `law`, the motion is the fastest one along the same path (cycle_time.cpp), and the rule is applied to the
 // intervals of its nodes.

@@ -103,7 +103,7 @@ class OrientationWorkspace final : public Quantity {
  private:
   std::unique_ptr<const Orientations> orientations_;
   double factor_;
-  std::vector<std::unique_ptr<const VoxelEvaluator>> maps_;  ///< one per point
+  std::vector<std::unique_ptr<const VoxelEvaluator>> maps_;  ///< for each point, evaluator of its feasible orientations
 };
 
 }  // namespace

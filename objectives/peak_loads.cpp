@@ -113,8 +113,8 @@ class PeakLoad final : public Quantity {
                                   design.scratch.template get<InverseDynamicsScratch<S>>(),
                                   [&](std::size_t, const ActuatorState<S>& drive) { append(design, drive, loads); });
   }
-  /// Variant of collect() for mechanisms without joint forces: computes speeds and accelerations by influence
-  /// coefficients.
+  /// Computes the joint speeds or accelerations of all samples by influence coefficients, for mechanisms without joint
+  /// forces. @return the number of samples before the first at which the mechanism does not assemble
   std::size_t collect_rates(const DesignView<double>& design, std::span<const MotionSample> samples,
                             std::vector<double>& loads) const {
     for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -1,5 +1,6 @@
-// Statistic of a pose quantity over the poses. The quantity is a formula ([[quantity]] in the mechanism file or the
-// study) or built in. If it has one value per joint, the value of the worst joint is used.
+// Statistic of a pose quantity over the feasible poses of the workspace analysis. The quantity is a formula
+// ([[quantity]] in the mechanism file or the study) or built in. If it has one value per joint, the value of the worst
+// joint is used.
 //
 // For gradient solvers the minimum and the maximum are replaced by a Kreisselmeier-Steinhauser aggregate; for this
 // purpose, the values of a formula, which can have any unit, are scaled to [0, 1]. Quantiles have no derivatives.

@@ -74,7 +74,7 @@ class SizeMeasure final : public Quantity {
 
   std::string name_, mode_;
   Measure measure_;
-  /// The motion along which poses are tested; std::nullopt: the poses of the workspace.
+  /// The motion over whose poses the size is measured; std::nullopt: over the poses of the workspace analysis.
   std::optional<SampledMotion> motion_;
 };
 

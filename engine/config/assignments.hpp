@@ -46,11 +46,12 @@ double parse_number(const std::string& text, const std::string& option, const st
 std::vector<std::optional<double>> parse_assignments(const std::vector<std::string>& lists, const std::string& option,
                                                      const std::vector<Assignable>& known);
 
-/// Values [SI] of `name=value` lists as for parse_assignments(); throws ConfigError if a name is not given.
+/// Values [SI] of comma-separated `name=value` lists, in the order of `known`; throws ConfigError if a name is not
+/// given.
 std::vector<double> parse_all_assignments(const std::vector<std::string>& lists, const std::string& option,
                                           const std::vector<Assignable>& known);
 
-/// Values [SI] of `name=value` lists as for parse_assignments(); the value is 0 for a name that is not given.
+/// Values [SI] of comma-separated `name=value` lists, in the order of `known`; 0 for a name that is not given.
 std::vector<double> parse_some_assignments(const std::vector<std::string>& lists, const std::string& option,
                                            const std::vector<Assignable>& known);
 
@@ -70,7 +71,8 @@ std::vector<std::optional<std::array<double, 2>>> parse_some_ranges(const std::v
                                                                     const std::string& option,
                                                                     const std::vector<Assignable>& known);
 
-/// Ranges [SI] of lists as for parse_some_ranges(); throws ConfigError if a name is not given.
+/// Ranges [SI] of comma-separated `name=from:to` lists, in the order of `known`; throws ConfigError if a name is not
+/// given.
 std::vector<std::array<double, 2>> parse_ranges(const std::vector<std::string>& lists, const std::string& option,
                                                 const std::vector<Assignable>& known);
 

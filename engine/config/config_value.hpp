@@ -43,7 +43,7 @@ class ConfigValue {
   bool is_integer() const { return value_->kind == TomlValue::Kind::integer; }
   bool is_text() const { return value_->kind == TomlValue::Kind::text; }
 
-  // Functions for values whose description contains unit, range and words:
+  // Functions for values whose description contains their unit, their range or the words that are allowed:
 
   /// A finite number in SI, or text with a unit.
   double number() const;
@@ -52,7 +52,7 @@ class ConfigValue {
   /// The elements of a list: `path[1]`, `path[2]`, ...
   std::vector<ConfigValue> elements() const;
 
-  // Functions for values whose unit, range or words depend on the mechanism or the study:
+  // Functions for values whose unit, range or allowed words depend on the mechanism or the study:
 
   /// A finite number in SI, or text with a unit of the dimension of `unit`; within [lower, upper].
   double number(std::string_view unit, double lower = -kUnbounded, double upper = kUnbounded) const;
@@ -74,7 +74,7 @@ class ConfigValue {
   /// the table has variants, also refuses a missing or unknown TableSpec::choice, and keys of other variants.
   /// @param more  further keys: those of a catalogue entry, or the names of TableSpec::named if these are known
   ConfigValue described_by(const TableSpec& spec, const std::vector<OptionSpec>& more = {}) const;
-  /// This value as a table, with the description of its key.
+  /// This value as a table that has the keys given by the description of this value.
   ConfigValue table(const std::vector<OptionSpec>& more = {}) const;
   /// This value as a table whose keys are names chosen by the user. Refuses keys that are not in `names`.
   ConfigValue table_of_names(const std::vector<std::string>& names) const;
@@ -158,7 +158,7 @@ class ConfigValue {
   std::string file_;
   std::string path_;
   Spec spec_ = nullptr;                                 ///< description of this value
-  std::shared_ptr<const Description> table_ = nullptr;  ///< description of its keys
+  std::shared_ptr<const Description> table_ = nullptr;  ///< if this value is a table: description of its keys
 };
 
 /// Descriptions of the values under the given names, from TableSpec::named.

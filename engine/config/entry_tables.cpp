@@ -198,7 +198,8 @@ void read_bounded_objective(const ConfigValue& value, const ObjectiveEntry& entr
   (is_late ? draft.parts.workspace_margins : draft.parts.design_margins).push_back(std::move(made));
 }
 
-/// Reads a constraint with a margin, of the design alone or of its workspace analysis.
+/// Reads a [[constraint]] that has a margin: a constraint on the design alone, or on the result of a workspace
+/// analysis.
 void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& entry, StudyDraft& draft) {
   auto specs = entry.options(draft.info());
   const ConfigValue table = value.described_by(margin_constraint_keys(), specs);
@@ -230,8 +231,8 @@ void read_margin_constraint(const ConfigValue& value, const ConstraintEntry& ent
       .push_back(std::move(made));
 }
 
-/// Name of the implied constraint: "motion-cycle" for a motion called cycle; characters that are invalid in names of
-/// constraints become dashes.
+/// Name of the constraint that a motion adds to a study: "motion-cycle" for a motion called cycle; characters that are
+/// invalid in names of constraints become dashes.
 std::string implied_name(const std::string& motion, const std::vector<StudyEntry>& before) {
   std::string name = std::string(kMotionConstraint) + "-" + motion;
   for (char& letter : name)

@@ -213,8 +213,8 @@ class StudyTables {
     return variants;
   }
 
-  /// The options of a constraint, combined from all mechanisms. If they differ between mechanisms, those of a mechanism
-  /// file are unknown, and any name is accepted.
+  /// The options that a constraint has for any of the mechanisms. If they differ between mechanisms, a mechanism file
+  /// may define further options, and any name is accepted.
   TableVariant variant_of(const ConstraintEntry& entry) const {
     TableVariant variant{entry.name, entry.meaning, {}};
     std::vector<std::string> names;

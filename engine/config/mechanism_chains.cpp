@@ -17,10 +17,10 @@ using limbs::Ends, limbs::Term, limbs::Vector3;
 struct ChainForm {
   const char* joints;
   const char* drive;
-  /// Keys of the drive that are given by the axes of the chain, in the order of `axes`; "=": parallel to the one
-  /// before.
+  /// For each direction that the chain lists under `axes`, the key of the drive that it becomes; "=": none, because the
+  /// direction has to be parallel to the previous one.
   std::vector<const char*> axes;
-  std::vector<const char*> links;  ///< keys of the drive that are given by `links`
+  std::vector<const char*> links;  ///< keys of the drive that the lengths under the chain's `links` become
 };
 
 const std::vector<ChainForm>& chain_forms() {
@@ -95,7 +95,7 @@ Vector3 rotated(const Vector3& x, const Vector3& n, const Term& angle) {
 
 /// The plane of the parallel revolute joints of a chain.
 struct Plane {
-  Vector3 normal, v;  ///< v: from A to B, in the plane
+  Vector3 normal, v;  ///< v: vector from A to B, projected onto the plane
   /// In the plane: the direction of the base from which the first revolute joint is counted, the links, and, if the
   /// last joint is a revolute joint, the direction of the platform to which it is counted.
   std::vector<Vector3> directions;

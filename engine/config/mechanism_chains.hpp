@@ -26,11 +26,11 @@ struct Chain {
   const char* unit(std::size_t joint) const { return joints[joint] == 'P' ? "m" : "rad"; }
 };
 
-/// An angle in the revolution about `centre`.
+/// An angle plus the multiple of 2 pi by which the result is within pi of the angle `centre`.
 limbs::Term wrapped(const limbs::Term& angle, const limbs::Term& centre);
 /// Reads the keys `chain` and `driven`. Refuses chains without a closed form.
 Chain read_chain(const ConfigValue& table);
-/// The table of a chain, unless it is spherical, as that of a limb with another drive.
+/// Converts the table of a limb with `chain` to that of a limb with the drive chain.drive. The chain is not spherical.
 ConfigValue rewritten(const Chain& chain, MechanismDraft& draft);
 
 /// Coordinates of the joints of a chain by their index, for the joints whose coordinates are defined.

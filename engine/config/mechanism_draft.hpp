@@ -95,7 +95,7 @@ struct NamedLimb {
   std::size_t joint_count = 1;  ///< number of joints; greater than 1 only for limbs with drive = "formula"
   /// Axis of the crank's pivot, or direction in which the slider moves; std::nullopt for other drives.
   std::optional<limbs::Vector3> axis = {};
-  /// Common direction of the axes of its joints; std::nullopt unless they are parallel revolute joints.
+  /// Common direction of the axes of the limb's joints; std::nullopt unless these are parallel revolute joints.
   std::optional<limbs::Vector3> revolute = {};
   bool has_rod = false;    ///< true: a rod or a telescopic leg carries the platform; false: the slider or two links do
   bool has_links = false;  ///< true: two links connect the slider to the platform, instead of a rod
@@ -137,7 +137,7 @@ struct LimbInPlane {
 
 /// An unknown of a [[solve]].
 struct SolvedUnknown {
-  ConfigValue at;  ///< its name in the file
+  ConfigValue at;  ///< the name of the unknown as it stands in the file
   std::string name;
   std::function<limbs::Term()> value;
 };
@@ -215,7 +215,7 @@ limbs::Rotation rotation_by(std::size_t axis, const limbs::Term& angle);
 bool depends_on_pose(const expression::Graph& graph, expression::Node node);
 /// Reads the coordinates of the platform. Those of the key `follows` are read when a formula uses them.
 void read_coordinates(const ConfigValue& platform, MechanismDraft& draft);
-/// Adds the names of all frames to those of formulas. The frames are read when a formula uses them.
+/// Adds the names of all frames to the names that formulas may use. A frame is read when a formula uses it.
 void read_frames(const ConfigValue& root, const ConfigValue& platform, MechanismDraft& draft);
 /// Reads the dependent coordinates and frames that no formula has used so far, and the origin of the platform.
 void resolve_frames(const ConfigValue& root, const ConfigValue& platform, MechanismDraft& draft);
@@ -277,7 +277,8 @@ void read_modes(const ConfigValue& root, MechanismDraft& draft);
 /// Reads the tables [[limb]]. For each limb, adds its joints, loop-closure equations, constraints, ranges, angles,
 /// links and bodies.
 void read_limbs(const ConfigValue& root, MechanismDraft& draft);
-/// Refuses the key `across` of a limb if the component of B - A along it changes with the pose.
+/// Refuses the key `across` of a limb if the component, along this direction, of the vector from the limb's end A to
+/// its end B changes with the pose.
 void refuse_changing_planes(MechanismDraft& draft);
 /// Reads the tables [[margin]] and [[design]].
 void read_margins(const ConfigValue& root, MechanismDraft& draft);
@@ -289,8 +290,8 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
 void add_clearance(MechanismDraft& draft);
 /// Reads the table [survey].
 void read_survey(const ConfigValue& root, MechanismDraft& draft);
-/// Prepares the contraction of coordinates without a box; those that remain unbounded have no range. The constraints of
-/// the model must be complete.
+/// Prepares the computation of ranges, by contraction, for the coordinates that have no `box`; coordinates that remain
+/// unbounded have no range. To be called when the model has all of its constraints.
 void bound_survey(MechanismDraft& draft);
 /// Lists all combinations of the signs as working modes, the default first.
 void list_modes(MechanismDraft& draft);

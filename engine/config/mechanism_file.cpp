@@ -131,7 +131,7 @@ void choose_masses(const ConfigValue& root, const std::string& chosen, Mechanism
   } else {
     if (all->keys().empty()) throw all->error("at least one alternative [masses.NAME]");
     model.mass_models = all->keys();
-    // Reading the tables of the other models refuses wrong keys in them.
+    // The tables of the other mass models are read only to refuse wrong keys in them.
     for (const std::string& name : model.mass_models) all->find_table(name);
   }
   model.mass_model = chosen.empty() ? model.mass_models.front() : chosen;

@@ -26,8 +26,8 @@ struct LimbParameter {
 /// Splits a name such as "arm2.l_b" into limb and parameter; std::nullopt for names without a dot.
 std::optional<LimbParameter> limb_parameter(const std::string& name, const SourceLocation& place);
 
-/// The document of a study whose tables [[quantity]] and limits of quantities are added to its mechanism; null: nothing
-/// is added.
+/// The document of a study whose quantities, limits of quantities, errors and drives are added to its mechanism; null:
+/// nothing is added.
 using StudyAdditions = std::shared_ptr<const ConfigValue>;
 
 /// Reads a mechanism from the text of its file. `file_name` is named in messages. Throws ConfigError.
@@ -39,7 +39,7 @@ std::shared_ptr<const Mechanism> read_mechanism_toml(const std::string& text, co
 
 /// The parameters of single limbs that could replace the parameters `common`: one for each limb whose joints or limits
 /// depend on the parameter, also those that exist already. Throws ConfigError.
-/// @param own  parameters of single limbs as for read_mechanism_toml()
+/// @param own  further parameters of single limbs, appended to those of the file
 std::vector<LimbParameter> limb_copies(const std::string& text, const std::string& file_name,
                                        const std::vector<std::string>& common, const std::vector<LimbParameter>& own);
 

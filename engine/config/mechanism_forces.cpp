@@ -144,7 +144,7 @@ void read_sharing(const ConfigValue& table, bool has_cables, MechanismDraft& dra
 
 /// Adds constraints that follow from the balance of forces along an axis of a translation: some cable has to pull
 /// against the load and, without a load, not all cables that pull can pull to the same side. They bound the pose
-/// without a limit of the cables' lengths. There must be no drives without tensions.
+/// without a limit of the cables' lengths. All limbs have to be cables.
 /// @param closure  true: the tensions balance each other, without loads
 void add_reach_of_cables(const std::vector<LoadSet>& loads, bool closure, MechanismDraft& draft) {
   generic::Model& model = draft.model;

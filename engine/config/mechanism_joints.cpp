@@ -92,8 +92,8 @@ class JointReader {
     const NamedFrame& own = draft_.frames.at(body);
     return add_solid(body, {.name = body, .point = nodes(own.at.origin), .rotation = rotation_nodes(own)});
   }
-  /// Axes about which the joint of a limb with parallel revolute joints can rotate in addition, because the body at its
-  /// end does.
+  /// Axes about which the body at the end of a limb rotates. The joints of a limb with parallel revolute joints can
+  /// rotate about these axes in addition to their own.
   std::vector<Vector3> turns_of(const NamedLimb& limb) const {
     const auto frame = draft_.frames.find(limb.end_on);
     if (frame == draft_.frames.end()) return {};
@@ -142,7 +142,7 @@ class JointReader {
   static generic::BeamNodes beam_of(const NamedLimb::Section& section, const Vector3& near, const Vector3& far) {
     return {nodes(near), nodes(far), section.EA.node(), section.EI.node(), section.GJ.node(), section.area.node()};
   }
-  /// The body as an elastic beam, which is clamped by the joint added last.
+  /// A part of a limb as an elastic beam from `near` to `far`; it is clamped by the joint that was added last.
   SolidNodes::Beam held_beam(const NamedLimb::Section& section, const Vector3& near, const Vector3& far,
                              bool is_rod) const {
     return {beam_of(section, near, far), joints_.size() - 1, is_rod};
@@ -207,8 +207,8 @@ class JointReader {
     const LimbPart &first = limb.parts[limb.parts.size() - 2], &last = limb.parts.back();
     const std::vector<Vector3> turns = limb.ends_in_ball ? std::vector<Vector3>() : turns_of(limb);
 
-    // A driven revolute joint of a chain with a slide: for the mobility, in which all drives are free, the slide may be
-    // the drive.
+    // A revolute joint of the chain is driven, and its slide is passive. The slide is described as the drive all the
+    // same: the mobility does not depend on it, because all drives are free there.
     if (limb.driven && limb.drive != "crank" && passive_slide_.empty()) passive_slide_ = limb.name;
     const bool telescope = limb.drive == "telescope", slides = limb.drive == "slider",
                has_links = first.name != "slider" && slides;

@@ -24,7 +24,7 @@ struct LimbCopy {
   const NamedFrame &base, &platform;  ///< frames to which the two ends of the limb are attached
   ConfigValue ends;  ///< table that contains the limb's keys `base` and `platform`: the table of the limb, or an
                      ///< element of `copies`
-  const Chain* chain = nullptr;  ///< the chain from which `table` was rewritten, or that is spherical; null: none
+  const Chain* chain = nullptr;  ///< the chain of joints of a limb with the key `chain`; null for other limbs
 
   limbs::Term length(const char* key, const char* expected) const;
   /// Reads a direction and rotates it with the copy.
@@ -64,9 +64,9 @@ std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::stri
 std::vector<LimbPart> read_parts(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 /// Adds the links of a limb, which are drawn and tested for clearance, if its table has the key `radius`.
 void add_limb_links(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
-/// Adds the constraints that the limb spans the distance of its end B from A, from the line of its slider, or from the
-/// middle of its rail, and the range of a crank's angle without inverse functions. Both follow from the other
-/// constraints, but are easier to contract.
+/// Adds constraints that follow from others, but are easier to contract: the lengths of the limb span the distance of
+/// its end B from A, from the line of its slider, or from the middle of its rail; and the angle of a crank is in its
+/// range, as a formula without inverse functions.
 void add_reach(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 
 /// Reads a [[limb]] with drive = "formula", whose joint coordinates are formulas of the pose.

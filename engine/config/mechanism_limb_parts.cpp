@@ -86,7 +86,8 @@ void add_reach(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
   std::vector<expression::Node>& constraints = copy.draft.model.reach_constraints;
   constraints.push_back((far * far - dot(v, v)).node());
   if (!limb.arm || copy.drive != "crank" || !copy.table.has("range")) return;
-  // The range of the crank's angle about its middle, without inverse functions, which are discontinuous.
+  // The crank's angle is within half its range of the middle of the range: a constraint without inverse functions,
+  // which are discontinuous.
   const auto [from, to] = copy.range("rad");
   const Term middle = (from + to) * 0.5;
   const Term half = call(expression::operation("min"), (to - from) * 0.5, Term(copy.draft.model.graph, kPi));

@@ -22,7 +22,7 @@ class MechanismScope {
 
   using Value = expression::FormulaValue;
 
-  /// Refuses a name that is invalid in formulas or in use.
+  /// Adds a name that formulas may use. Refuses a name that is invalid in formulas or already in use.
   void add(const ConfigValue& at, const std::string& name, const Value& value);
   void add(const ConfigValue& at, const std::string& name, expression::Node node) { add(at, name, model_.term(node)); }
   /// Adds a name whose value is computed when a formula uses it first, so that the formulas that define it may use
@@ -31,7 +31,8 @@ class MechanismScope {
   /// Adds a name with a predefined value, which is computed at its first use. If a mechanism file defines the same
   /// name, the definition of the file replaces the predefined value.
   void add_predefined(const std::string& name, std::function<Value()> value);
-  /// The value of a name. @param user  the value that refers to it; refused if the name depends on itself
+  /// The value of a name. @param user  the formula in the file that uses the name; refused if the name depends on
+  /// itself
   const Value& value(const std::string& name, const ConfigValue& user) { return value_of(*names_.find(name), user); }
   void resolve(const ConfigValue& root);
   /// Adds the name of a point or joint of a limb, "arm1.C".
@@ -49,9 +50,9 @@ class MechanismScope {
   /// Reads a number, text with a unit of the dimension of `unit`, or a formula of the names defined so far. If the
   /// formula can be undefined, add_domains() adds the condition that it is defined, under the name `what`.
   limbs::Term formula(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// Like formula(), but the value may also be a vector, a rotation or a frame.
+  /// Reads a number, text with a unit, or a formula, whose value may also be a vector, a rotation or a frame.
   Value formula_of_any_kind(const ConfigValue& value, const std::string& unit, const std::string& what);
-  /// Reads a formula that depends on parameters only, like formula().
+  /// Reads a number, text with a unit, or a formula that depends on parameters only.
   limbs::Term of_design(const ConfigValue& value, const std::string& unit, const std::string& what);
   /// Reads a formula of parameters whose value has to be positive (with may_vanish, not negative). A number that
   /// violates this is refused; a formula may violate it for some designs.

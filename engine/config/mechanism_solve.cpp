@@ -13,9 +13,11 @@ namespace {
 using expression::Entry, expression::Graph, expression::ImplicitSystem, expression::Node;
 using generic::Inputs;
 
-// Positions of the unknowns among the inputs of the draft that provides the equations, beyond all other inputs.
+// Index of the first unknown among the inputs of the graph in which the equations are read; all other inputs have
+// smaller indices.
 constexpr std::size_t kFirstUnknown = 1'000'000;
-// Formulas of design parameters refuse inputs that depend on coordinates, and therefore unknowns, too.
+// Unknowns count as inputs that depend on all coordinates; formulas that may depend on parameters only therefore refuse
+// them.
 constexpr expression::Groups kUnknownGroups = Inputs::kRates - Inputs::coordinate_group(0);
 
 constexpr const char* kNames = "a list of 1 to 6 names: [\"x\", \"y\"]";
@@ -26,7 +28,7 @@ std::string count_of(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// The unit of an unknown: that of the coordinate of this name, otherwise that of its start.
+/// The unit of an unknown: that of the coordinate of this name, otherwise that of the unknown's start value.
 std::string unit_of_unknown(const std::string& name, const ConfigValue& start, const MechanismDraft& draft) {
   if (const PlatformMotion* const motion = find_named(draft.motions, name)) return motion->unit();
   if (start.is_text())

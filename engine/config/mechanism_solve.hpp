@@ -22,11 +22,11 @@ class SolvedSystems {
   MechanismDraft& draft() { return *draft_; }
   /// Defines the unknowns as inputs of draft().
   void use_inputs();
-  /// Reads the equations and the start of all systems, after the definitions have been read into draft().
+  /// Reads the equations and the start values of all systems, after the definitions have been read into draft().
   void read_equations();
   /// Defines the unknowns of the mechanism as solutions of the equations.
   void use_solutions(MechanismDraft& mechanism);
-  /// Adds a constraint for each system: that it has a solution.
+  /// Adds a constraint for each system of equations: that the system has a solution.
   void add_margins(MechanismDraft& mechanism);
 
  private:
@@ -52,7 +52,7 @@ class SolvedSystems {
   std::unique_ptr<MechanismDraft> draft_;
 };
 
-/// Adds those unknowns that are no coordinates to the names of formulas.
+/// Adds the unknowns of [[solve]] that are not coordinates to the names that formulas may use.
 void add_unknowns(MechanismDraft& draft);
 
 }  // namespace pkm

@@ -81,7 +81,8 @@ void read_survey(const ConfigValue& root, MechanismDraft& draft) {
         columns_along.push_back(coordinate_named(each, model.info));
     }
   }
-  // Default ranges: a full rotation for an angle beside a box; otherwise that of the feasible poses.
+  // Range of a coordinate without `box`: a full rotation for an angle if other coordinates have a `box`; otherwise the
+  // range of the feasible poses, which is computed by contraction.
   const bool has_box = survey && survey->has("box");
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_angle = model.rotation_axes[i].has_value();

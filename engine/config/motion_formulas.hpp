@@ -35,12 +35,12 @@ class MotionFormulas {
   };
   void find(const ConfigValue& value, const std::vector<std::size_t>& path, bool may_use_time);
   void add(const ConfigValue& value, const std::vector<std::size_t>& path, bool may_use_time);
-  /// The formula of the time that remains when the parameters are replaced by their values.
+  /// The formula `text` with all parameters replaced by their values, so that it depends on the time only.
   std::string formula_of_time(const std::string& text, std::span<const double> parameters) const;
 
   TomlValue table_;
   std::vector<std::string> names_;    ///< names of the parameters that formulas may use
-  std::vector<std::size_t> numbers_;  ///< index of each of these names among all parameters
+  std::vector<std::size_t> numbers_;  ///< for each of `names_`, the index of the parameter among all parameters
   std::vector<Place> places_;
   std::vector<std::size_t> used_;
 };

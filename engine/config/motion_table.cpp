@@ -25,7 +25,7 @@ TimeLaw law_of(const ConfigValue& table) {
   return law == "cycloid" ? TimeLaw::cycloid : TimeLaw::quintic;
 }
 
-/// Descriptions of the coordinates of a point.
+/// Descriptions of the keys that give the values of the coordinates at a point of a motion.
 std::vector<OptionSpec> coordinate_keys(const ConfigValue& point, const Coordinates& names) {
   return named_keys(point.table_spec(), names_of(names));
 }

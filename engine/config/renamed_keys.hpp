@@ -1,5 +1,5 @@
-// Table of the keys and options that were renamed before the first release. It is used to refuse old names, by `pkmopt
-// upgrade`, and to read the text in old study files.
+// Table of the keys and options that were renamed before the first release. It serves to refuse old names, to replace
+// them (`pkmopt upgrade`), and to read the text in old study files.
 #pragma once
 
 #include <span>

@@ -41,7 +41,7 @@ void read_run_tables(const ConfigValue& root, StudyDraft& draft) {
   if (const auto table = root.find_table("checkpoint")) draft.study.checkpoint_every = table->find_number("every");
   if (const auto table = root.find_table("final")) {
     if (const auto round = table->find("round")) {
-      // The step has the unit that all variables share, or "1" if their units differ.
+      // The step to which values are rounded has the unit that all variables share, or "1" if their units differ.
       const auto& variables = draft.parts.space.variables();
       if (variables.empty()) throw round->refusal("only [variables] are rounded, and the study has none");
       std::string& unit = draft.study.round_unit = variables.front().unit;
@@ -187,7 +187,8 @@ Study read_rows(const StudySource& source, const Catalogues& catalogues, const s
   return std::move(draft.study);
 }
 
-/// Makes the problem of every row once, so that errors in a catalogue are reported when the study is read.
+/// Makes the problem of every row of the catalogues once, so that errors in a catalogue are reported when the study is
+/// read.
 void check_rows(const Study& study, const SourceLocation& place) {
   const ProblemParts& parts = study.problem->parts();
   for (const Choice& choice : parts.choices)
@@ -246,7 +247,8 @@ SourceText unknown_catalogue(const ConfigValue& file) {
   throw file.refusal("the contents of the catalogue are not available here");
 }
 
-/// Reads a file that a study names, relative to the folder of the study. @param owner  "a mechanism"
+/// Reads a file that a study names, relative to the folder of the study.
+/// @param owner  whose file it is, for messages: "a mechanism"
 SourceText load_file(const ConfigValue& file, const std::string& owner, const std::string& what) {
   const std::string expected = "the name of " + owner + "'s file";
   const std::string& name = file.text(expected);

@@ -35,8 +35,8 @@ struct Stage {
   std::shared_ptr<const OptimiserEntry> entry;
   Options options;  ///< values of the stage's options, with all default values, also those that depend on the variables
   std::shared_ptr<const Optimiser> optimiser;
-  int line = 0;                   ///< line of its [[stage]] in the file
-  std::vector<OptionSpec> specs;  ///< options of the entry with the units and defaults of this study
+  int line = 0;                   ///< line of the table [[stage]] in the study's TOML file
+  std::vector<OptionSpec> specs;  ///< options of the optimiser, with the units and defaults of this study
 };
 
 /// An [[objective]], [[constraint]] or [[output]] with its defaults, for listings.
@@ -59,8 +59,8 @@ struct Reference {
 
 struct Study {
   std::string text;                       ///< the TOML document, with the changes by the command line
-  std::string file_name;                  ///< name of the file when it was read
-  std::vector<std::string> changes;       ///< changes by the command line, as in the text: "--set", "L0=2"
+  std::string file_name;                  ///< name that the TOML file had when it was read
+  std::vector<std::string> changes;       ///< changes by the command line, as arguments: "--set", "L0=2"
   std::optional<SourceText> description;  ///< the mechanism file, if [mechanism] names one
   std::vector<std::string> catalogues;    ///< files of the catalogues that [variables] name
   std::string name;                       ///< name of the study; by default the name of its file without extension

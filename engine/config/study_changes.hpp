@@ -21,7 +21,7 @@ struct StudyChanges {
   std::vector<std::string> limit;       ///< thresholds of poses
   std::vector<std::string> cells;       ///< numbers of voxels by coordinate, or one number for all coordinates
   std::vector<std::string> start_from;  ///< name of the study file whose designs the first stage starts from
-  /// Designs of that study file, one list "name=value,.." each, see engine/runner/start_from.hpp.
+  /// Designs from which the first stage starts, one list "name=value,.." each (engine/runner/start_from.hpp).
   std::vector<std::string> start;
 
   /// Parameters of single limbs, such as "arm2.l_b", that the mechanism must have in addition to those that the study

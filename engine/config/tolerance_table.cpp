@@ -27,8 +27,8 @@ struct Tolerance {
 
 const std::vector<std::string> kSettings = {"samples", "correlation"};
 
-/// The names of parameters in the table, without its settings. If a key is not a parameter, but the name of a limb, its
-/// table contains parameters of this limb.
+/// The names of the parameters whose errors the table [tolerance] gives. If a key is not a parameter, but the name of a
+/// limb, its table contains parameters of this limb.
 std::vector<std::string> names_in(const ConfigValue& table, const std::vector<Parameter>& known) {
   std::vector<std::string> names;
   for (const std::string& key : table.keys()) {
@@ -151,7 +151,8 @@ void add_errors(const std::vector<Tolerance>& tolerances, const std::vector<Limb
   }
 }
 
-/// Cholesky factor of the part of a matrix in these rows and columns; empty if this is not positive definite.
+/// Cholesky factor of the part of a matrix in the given rows and the columns with the same indices; empty if this part
+/// is not positive definite.
 std::vector<std::vector<double>> cholesky(const std::vector<std::vector<double>>& matrix,
                                           const std::vector<std::size_t>& rows) {
   std::vector<std::vector<double>> factor(rows.size(), std::vector<double>(rows.size()));

@@ -12,9 +12,9 @@ struct DisplayUnit {
   double size;  ///< value of the unit in SI
   std::string name;
 };
-/// mm for m, deg for rad, otherwise the SI unit itself.
+/// The display unit for values of any magnitude: mm for m, deg for rad, otherwise the SI unit itself.
 DisplayUnit display_unit(std::string_view si_unit);
-/// The unit that suits a value of this magnitude: "mm", or "um" for 2e-5 m and "m" for 12 m; "m^3" or "cm^3"; "N" or
+/// The unit that suits a value of a given magnitude: "mm", or "um" for 2e-5 m and "m" for 12 m; "m^3" or "cm^3"; "N" or
 /// "kN". Values that are printed in one unit, such as those of a table row, share the unit of the largest.
 DisplayUnit display_unit(std::string_view si_unit, double magnitude);
 

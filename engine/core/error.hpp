@@ -37,14 +37,14 @@ class DesignError : public std::invalid_argument {
 };
 
 /// A study file that cannot be read, written or locked, or whose content is invalid. what() is one sentence with the
-/// file's name, limited in length and printable like that of ConfigError.
+/// file's name, shorter than 2 kB and printable.
 class StorageError : public std::runtime_error {
  public:
   explicit StorageError(std::string_view sentence);
 };
 
-/// The message that is shown to the user for any exception, limited in length and printable in the same way. Messages
-/// of the standard library's own exceptions (such as "vector::_M_range_check") are replaced by a sentence.
+/// The message that is shown to the user for any exception: shorter than 2 kB, and printable. Messages of the standard
+/// library's own exceptions (such as "vector::_M_range_check") are replaced by a sentence.
 std::string message_of(const std::exception& error);
 
 /// The known name with the smallest edit distance (Levenshtein) to `name`, or one that begins with it; "" if none is

@@ -76,7 +76,7 @@ struct OptionSpec {
 struct TableVariant {
   std::string word, meaning;
   std::vector<OptionSpec> keys;
-  std::vector<OptionSpec> named = {};  ///< as TableSpec::named, for this value only
+  std::vector<OptionSpec> named = {};  ///< at most one element: description of the keys that the user names
 };
 
 /// A TOML table: the keys that it may always have, and those that it may have only for one value of its key `choice`
@@ -101,8 +101,9 @@ class Options {
   void set(const std::string& name, OptionValue value) { values_[name] = std::move(value); }
   bool has(const std::string& name) const { return values_.contains(name); }
 
-  // These functions throw std::out_of_range if the option has no value, and std::bad_variant_access if it is of another
-  // kind. Both are programming errors of the catalogue entry, not of the user: the reader has validated all values.
+  // The following functions throw std::out_of_range if the option has no value, and std::bad_variant_access if it is of
+  // another kind. Both are programming errors of the catalogue entry, not of the user: the reader has validated all
+  // values.
   double number(const std::string& name) const { return std::get<double>(values_.at(name)); }
   std::int64_t integer(const std::string& name) const { return std::get<std::int64_t>(values_.at(name)); }
   bool flag(const std::string& name) const { return std::get<bool>(values_.at(name)); }

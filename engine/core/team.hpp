@@ -75,7 +75,8 @@ void parallel_for(std::size_t iterations, WorkRef work);
 
 /// Parallel loop for a few long iterations that contain parallel_for() loops (nested parallelism). Executes work(i, i +
 /// 1) for all i in [0, iterations); iterations are started in this order. Threads for which no iteration is left help
-/// with the inner loops of the others. A single iteration has the whole team. Exceptions as for parallel_for().
+/// with the inner loops of the others. A single iteration has the whole team. An exception thrown by `work` is rethrown
+/// here; if several calls throw, only one exception is.
 void parallel_for_nested(std::size_t iterations, WorkRef work);
 
 }  // namespace pkm

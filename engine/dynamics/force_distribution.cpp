@@ -42,9 +42,9 @@ Solutions solutions_of(const AxisMatrix<double>& J, const VectorXd& scale, const
 /// The lambda of least norm with lower <= particular + basis lambda <= upper; std::nullopt if no lambda satisfies this.
 std::optional<VectorXd> nearest(const Solutions& y, const VectorXd& lower, const VectorXd& upper) {
   const Index r = y.basis.cols();
-  // All limits are divided by a length that exceeds |lambda| if all of them are finite. Then the residual of the least
-  // squares is at least 1 / sqrt(2) if the set is not empty, and 0 if it is. Otherwise lambda up to 1000 lengths are
-  // found.
+  // All limits are divided by `length`, which exceeds |lambda| if all limits are finite. In this case, the residual of
+  // the least squares is at least 1 / sqrt(2) if a lambda satisfies the limits, and 0 if none does. If a limit is
+  // infinite, solutions with |lambda| <= 1000 length are found.
   double square = y.particular.squaredNorm();
   for (Index i = 0; i < lower.size(); ++i)
     for (const double limit : {lower(i), upper(i)})
@@ -149,7 +149,7 @@ std::optional<AxisVector<double>> distribute_forces(const AxisMatrix<double>& J,
   if (y.basis.cols() > 0 && limits.sharing == ForceSharing::centre) lambda = analytic_centre(y, lower, upper, *lambda);
   const VectorXd forces = (y.particular + y.basis * *lambda).cwiseProduct(scale);
   AxisVector<double> tau(limits.scale.size());
-  // lambda satisfies a limit only up to rounding errors, so that forces are moved into their limits.
+  // lambda satisfies the limits only up to rounding errors; therefore each force is clamped to its limits.
   for (std::size_t i = 0; i < tau.size(); ++i)
     tau[i] = std::clamp(forces(static_cast<Index>(i)), limits.lower[i], limits.upper[i]);
   return tau;

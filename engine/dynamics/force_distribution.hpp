@@ -15,8 +15,7 @@ namespace pkm {
 
 enum class ForceSharing {
   least_norm,     ///< minimum of the sum of the squared drive forces
-  least_maximum,  ///< minimum of the largest magnitude of a drive force; among several solutions, the one with the
-                  ///< least norm
+  least_maximum,  ///< minimum of the largest magnitude of a drive force; among several, that of least norm
   centre          ///< maximum of the product of the distances of the drive forces from all limits (analytic centre)
 };
 

@@ -101,7 +101,8 @@ MinNormSolution min_norm_solution(const NewtonEuler& system) {
   LinearEquations e = equations(system);
   const std::vector<JointColumns> columns = columns_of(system);
   const double length = couple_length(system);
-  // Moment equations are divided by the length, and couples are multiplied by it, so that A is dimensionless.
+  // Moment equations are divided by the characteristic length, and the columns of couples are multiplied by it, so
+  // that A is dimensionless.
   for (Index row = 3; row < e.A.rows(); row += 6) {
     e.A.middleRows<3>(row) /= length;
     e.b.segment<3>(row) /= length;

@@ -60,7 +60,8 @@ struct JointSpace {
   AxisVector<S> c_q, G_q;  ///< Coriolis and centrifugal forces; gravity forces [N, N m]
 };
 
-/// A matrix of the same size whose elements are NaN. It stands for quantities that do not exist at singularities.
+/// Returns a matrix of the size of `like` whose elements are NaN. It stands for quantities that do not exist at
+/// singularities.
 template <SmallMatrix M>
 M undetermined(M like) {
   for (auto& element : like) element = typename M::Scalar(std::numeric_limits<double>::quiet_NaN());

@@ -31,7 +31,7 @@ PlotAxis plot_axis(const SliceOutline& outline, std::size_t i) {
 
 /// Divides a text at blanks into lines that are at most `width` pixels wide.
 std::vector<std::string> wrapped(const std::string& text, double width) {
-  // Number of pixels per unit of the stroke font; with it, an average letter is as wide as one of 13 pixels.
+  // Number of pixels per unit of the stroke font, with which an average letter is as wide as in a font of 13 pixels.
   constexpr double kUnit = 1.35;
   std::vector<std::string> lines = {""};
   for (std::size_t at = 0; at < text.size();) {

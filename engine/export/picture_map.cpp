@@ -19,7 +19,7 @@ using Anchor = Picture::Anchor;
 constexpr double kTolerance = 0.05;  // maximum deviation of simplified lines [pixel]
 constexpr double kLetterUnit = 1.5;  // number of pixels per unit of the stroke font, for the widths of labels
 constexpr double kRight = 150;       // width of the space for the colour bar [pixel]
-// Distance from the frame, width, and height of the arrows of the colour bar [pixel].
+// Colour bar: its distance from the frame, its width, and the height of the arrows at its ends [pixel].
 constexpr double kBarGap = 24, kBarWidth = 18, kBarArrow = 14;
 constexpr Colour kUndefined = {0xc8, 0xc8, 0xc8}, kBarFrame = {0x22, 0x22, 0x22};
 

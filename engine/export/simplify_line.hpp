@@ -9,7 +9,8 @@ namespace pkm {
 
 /// Removes points so that all of them are within `tolerance` of the remaining polyline; its ends remain.
 std::vector<PlanePoint> simplify_line(const std::vector<PlanePoint>& points, double tolerance);
-/// Simplifies closed polygons in the same way; each polygon keeps its first point.
+/// Removes points of closed polygons so that all of them are within `tolerance` of the remaining polygon; each polygon
+/// keeps its first point.
 std::vector<SliceOutline::Loop> simplify_loops(std::vector<SliceOutline::Loop> loops, double tolerance);
 
 }  // namespace pkm

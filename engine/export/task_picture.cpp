@@ -54,14 +54,14 @@ class ComparisonDrawing {
   using Anchor = Picture::Anchor;
   using Range = std::array<double, 2>;
 
-  /// Index of the coordinate of a robot that belongs to an axis of the comparison; std::nullopt if it lacks it.
+  /// Index of the coordinate of a robot that belongs to an axis of the comparison; std::nullopt if the robot lacks it.
   std::optional<std::size_t> coordinate(const ComparedRobot& robot, std::size_t axis) const {
     const auto& coordinates = robot.mechanism->info().coordinates;
     const AxisInfo* const found = find_named(coordinates, comparison_.axes[axis].name);
     return found ? std::optional(static_cast<std::size_t>(found - coordinates.data())) : std::nullopt;
   }
 
-  /// Range of each axis: all outlines, regions and motions, and a margin of 5 %.
+  /// The range of each axis to be drawn: it contains all outlines, regions and motions, and a margin of 5 %.
   std::vector<Range> find_ranges() const {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::vector<Range> ranges(comparison_.axes.size(), {kInfinity, -kInfinity});
@@ -102,7 +102,7 @@ class ComparisonDrawing {
     picture_.texts.push_back({x, y, text, Anchor::begin, is_bold});
   }
 
-  /// The name of the task, and the robots with their colours and whether they perform it.
+  /// Draws the name of the task, and for each robot its colour, its name and whether it can perform the task.
   void draw_head() {
     add_text(kRightOf, 28, comparison_.task, true);
     top_ = 28;
@@ -191,7 +191,7 @@ class ComparisonDrawing {
       picture_.lines.push_back({std::move(corners), kRegion, 1.5});
       picture_.texts.push_back({upper_left[0], upper_left[1] - 4, box.name, Anchor::begin, false, 0, kRegion, kWhite});
     }
-    // The path of a motion is drawn for the first robot that has both axes.
+    // The path of a motion is drawn for the first robot that has both axes of the slice.
     for (const std::string& name : motions())
       for (const ComparedRobot& robot : comparison_.robots) {
         const TaskMotion* const motion = find_named(robot.motions, name);
@@ -210,7 +210,7 @@ class ComparisonDrawing {
     return {std::fmax(range[0], ranges_[axis][0]), std::fmin(range[1], ranges_[axis][1])};
   }
 
-  /// Outline of a slice of a robot's workspace, in the frame of the task; empty if it lacks one of the axes.
+  /// Outline of a slice of a robot's workspace, in the frame of the task; empty if the robot lacks one of the axes.
   std::vector<SliceOutline::Loop> outline_of(const ComparedRobot& robot, const View& view) const {
     const auto across = coordinate(robot, view.across), up = coordinate(robot, view.up);
     if (!robot.workspace || !across || !up) return {};
@@ -236,7 +236,7 @@ class ComparisonDrawing {
   /// Names of the motions, in the order of the task.
   std::vector<std::string> motions() const { return names_of(comparison_.robots.front().motions); }
 
-  /// The curves along a motion, in two columns; all have the same time axis.
+  /// Draws the loads along a motion over time, in two columns of panels; all panels have the same time axis.
   void draw_motion(const std::string& name) {
     struct Curve {
       std::size_t robot;
@@ -301,8 +301,8 @@ class ComparisonDrawing {
   }
 
   const TaskComparison& comparison_;
-  std::vector<std::vector<SliceOutline::Loop>> outlines_;  ///< see outline()
-  std::vector<Range> ranges_;                              ///< range of each axis
+  std::vector<std::vector<SliceOutline::Loop>> outlines_;  ///< outlines of the workspaces, by view, then by robot
+  std::vector<Range> ranges_;                              ///< drawn range of each axis
   Picture picture_;
   double top_ = 0, right_ = 0;  ///< top_: y below everything that has been drawn; right_: x of its right end [pixel]
 };

@@ -78,13 +78,15 @@ class BatchStage {
   /// Slots of the stage's inputs, which the caller fills before run().
   const std::vector<std::uint32_t>& inputs() const { return inputs_; }
 
-  /// Runs the stage for `count` values; parameters as run_batch().
+  /// Runs the stage for the first `count` values of each row.
   /// @param registers  values of the registers of the earlier stages
+  /// @param rows       slot k is rows[k * kRow], ..., rows[k * kRow + kRow - 1]
+  /// @param count      a multiple of kLanes, at most kRow
   void run(const double* registers, double* rows, std::size_t count) const;
 
  private:
   std::vector<BatchStep> steps_;
-  std::vector<std::shared_ptr<const BatchSolve>> systems_;  ///< those of the steps
+  std::vector<std::shared_ptr<const BatchSolve>> systems_;  ///< systems that the steps solve
   std::vector<Operand> operands_;                           ///< location of each register of the program, by register
   std::vector<std::uint32_t> inputs_;
   std::size_t slots_ = 0;

@@ -27,7 +27,7 @@ class Formula {
  public:
   /// Throws std::invalid_argument with a message that gives the position of the error if `text` is not a valid formula,
   /// and std::logic_error if a name is invalid or given twice.
-  /// @param names  variables that the formula may use; see expression::may_be_name()
+  /// @param names  variables that the formula may use; a name is valid if expression::may_be_name() is true
   Formula(const std::string& text, const std::vector<std::string>& names);
 
   const std::string& text() const { return text_; }

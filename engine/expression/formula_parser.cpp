@@ -45,15 +45,13 @@ class Parser {
     enum class Kind { operation, parenthesis, bracket, question, colon };
     Kind kind;
     const Token* token;  ///< the operator, parenthesis or bracket; for a function call, the function's name
-    const Operation* operation = nullptr;  ///< operation that is applied; null for a parenthesis that only groups, and
-                                           ///< for a bracket
+    const Operation* operation = nullptr;  ///< applied operation; null for a bracket or a grouping parenthesis
     std::size_t count = 0;                 ///< number of arguments or elements that have been read so far
   };
   using Kind = Pending::Kind;
   struct Operand {
     FormulaValue value;
-    const Operation* from;  ///< operation that computed the value; null if the value is a number, a variable or a
-                            ///< vector
+    const Operation* from;  ///< operation that computed the value; null for a number, a variable or a vector
   };
 
   void push_token(const Token& token) {

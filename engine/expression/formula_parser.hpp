@@ -14,7 +14,7 @@ namespace pkm::expression {
 
 /// Parses a formula; see engine/expression/formula.hpp for the syntax. Throws std::invalid_argument with a message that
 /// gives the position of the error if `text` is not a valid formula.
-/// @param names  variables that the formula may use; see may_be_name()
+/// @param names  variables that the formula may use; may_be_name() is true for each name
 /// @param nodes  the node of each variable
 /// @return the node of the formula's value
 Node read_formula(Graph& graph, const std::string& text, const Names& names, std::span<const Node> nodes);
@@ -24,8 +24,8 @@ struct ParsedFormula {
   /// Nodes of the vector norms in the formula: square roots that are defined for all arguments.
   std::vector<Node> norms;
 };
-/// Parses a formula whose value and whose variables may be scalars, vectors, rotations or frames. Throws as
-/// read_formula() does.
+/// Parses a formula whose value and whose variables may be scalars, vectors, rotations or frames. Throws
+/// std::invalid_argument with a message that gives the position of the error if `text` is not a valid formula.
 /// @param value_of  the value of a name, by its index in `names`
 ParsedFormula parse_formula(Graph& graph, const std::string& text, const Names& names,
                             const std::function<FormulaValue(std::size_t)>& value_of);

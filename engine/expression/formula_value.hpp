@@ -18,17 +18,18 @@ struct Frame {
   Rotation rotation;
 };
 
-/// Vectors and rotations are three-dimensional. Elements that are known to be 0 or 1 are simplified, as by Term.
+/// A scalar, or a three-dimensional vector, rotation or frame. Operations on elements that are known to be 0 or 1 are
+/// simplified by the operators of Term.
 using FormulaValue = std::variant<Term, Vector3, Rotation, Frame>;
 
 /// The elements of a value: 1 of a scalar, 3 of a vector, 9 of a rotation, 12 of a frame.
 std::vector<Term> elements(const FormulaValue& value);
 
-/// "a scalar", "a vector", "a rotation" or "a frame".
+/// The kind of a value in words: "a scalar", "a vector", "a rotation" or "a frame".
 std::string kind_of(const FormulaValue& value);
 
-/// A function of vectors. Such a name is a function only where an argument list follows, so that older files may use it
-/// for a variable.
+/// A function of vectors. Its name denotes the function only where an argument list follows, so that files may also use
+/// this name for a variable.
 struct VectorFunction {
   std::string name;
   std::vector<std::string> arguments;  ///< kinds of the arguments: "a vector"

@@ -43,7 +43,7 @@ struct Entry {
   std::array<Node, kMaxArguments> arguments{};
   std::uint8_t count = 0;   ///< number of arguments
   std::int32_t input = -1;  ///< index of the node among the inputs of the graph; -1 if the node is not an input
-  double number = 0;        ///< value, if the node is a constant; of an unknown, its index
+  double number = 0;        ///< value if the node is a constant; index of the unknown if it is one
   Groups groups = 0;        ///< groups of all inputs that the node depends on, directly or through its arguments
   const Solution* solution = nullptr;  ///< the system that the node solves, if its operation is solving()
 
@@ -63,11 +63,10 @@ class Graph {
   /// The node of the same operation as `entry`, which may belong to another graph, with these operands.
   Node apply_like(const Entry& entry, std::span<const Node> operands);
   /// Adds the solution of a system of equations.
-  /// @return the node of its status, which is 1 where the system is solved and otherwise -1, then those of its
-  /// unknowns,
-  ///         which are NaN where it is not solved
+  /// @return the node of its status (1 where the system is solved, otherwise -1), followed by the nodes of its unknowns
+  ///         (NaN where it is not solved)
   std::vector<Node> solve(std::shared_ptr<const ImplicitSystem> system, std::vector<Node> operands);
-  /// The nodes of the unknowns, by the node of the status.
+  /// The nodes of the unknowns of a system of equations, given the node of its status.
   std::vector<Node> unknowns(Node status);
 
   const Entry& operator[](Node node) const { return entries_[static_cast<std::size_t>(node)]; }
@@ -90,8 +89,8 @@ class Graph {
   Node power(Node base, int exponent);
 
   std::vector<Entry> entries_;
-  std::vector<std::shared_ptr<const Solution>> solutions_;  ///< those of the entries
-  /// Index of the node for each contents that the graph has (hash-consing).
+  std::vector<std::shared_ptr<const Solution>> solutions_;  ///< systems that the entries solve
+  /// The nodes of the graph by their contents, to find an existing node (hash-consing).
   std::unordered_map<Entry, Node, Hash, Equal> nodes_;
 };
 

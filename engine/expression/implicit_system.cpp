@@ -81,7 +81,7 @@ struct ImplicitSystem::Factors {
 /// The linearised equations at a point, and Newton's method.
 class ImplicitSystem::Newton {
  public:
-  static constexpr double kMinDamping = 1.0 / 64;  ///< a step is not damped further, and is carried out
+  static constexpr double kMinDamping = 1.0 / 64;  ///< minimum damping factor; a step with it is always carried out
 
   Newton(const ImplicitSystem& system, std::span<const double> operands) : system_(system) {
     factors.n = system.unknowns();
@@ -92,7 +92,7 @@ class ImplicitSystem::Newton {
     system.linearisation_.run<double>(0, inputs_, registers_);
   }
 
-  Factors factors;  ///< of the Jacobian at the point of the last successful call of factor()
+  Factors factors;  ///< LU factors of the Jacobian at the point of the last successful call of factor()
   std::span<const double> registers() const { return registers_; }
 
   /// Evaluates the equations and their Jacobian at a point. @return the values of the equations
@@ -150,7 +150,8 @@ class ImplicitSystem::Newton {
     for (std::size_t i = 0; i < factors.n; ++i) u[i] -= damping * change[i];
     return u;
   }
-  /// Maximum norm, where components of unknowns above 1 [m, rad] are relative to them; NaN if one is NaN.
+  /// Maximum norm of a change of the unknowns u, in which component i is divided by |u_i| if |u_i| > 1 [m, rad]; NaN if
+  /// a component is NaN.
   double norm(const Vector& change, const Vector& u) const {
     double largest = 0;
     for (std::size_t i = 0; i < factors.n; ++i) {
@@ -162,7 +163,8 @@ class ImplicitSystem::Newton {
   }
 
   const ImplicitSystem& system_;
-  // Reused by later calls, because solving is in the innermost loops of workspace analyses.
+  // Scratch memory, reused by later calls of this thread, because solving is in the innermost loops of workspace
+  // analyses.
   static thread_local std::vector<double> registers_, inputs_;
 };
 
@@ -367,7 +369,7 @@ class ImplicitSystem::Krawczyk {
     }
     return true;
   }
-  /// Computes C over a box.
+  /// Computes C = I - Y J over a box.
   /// @return false if the equations are not known to be continuous there, or their derivatives are unknown
   bool contract(const Box& box) {
     const std::vector<Interval>& found = run(system_.linearisation_, box);
@@ -387,7 +389,7 @@ class ImplicitSystem::Krawczyk {
       }
     return true;
   }
-  /// Component i of C [-w, w].
+  /// Component i of C [-w, w], where C = I - Y J over the box of the last contract().
   Interval contracted(std::size_t i, const Vector& w) const {
     Interval sum(0.0);
     for (std::size_t j = 0; j < n_; ++j) sum = sum + at_.C[i][j] * ball(w[j]);
@@ -417,7 +419,8 @@ class ImplicitSystem::Krawczyk {
     for (std::size_t i = 0; i < n_; ++i) image[i] = -Yf[i];
     int refinements = 0;
     for (int trial = 0; trial < kMaxTrials && refinements <= kRefinements; ++trial) {
-      // inflated until the test succeeds, afterwards the box that is known to contain the solution
+      // Half widths of the box around u: inflated until the test succeeds, afterwards those of the box that is known to
+      // contain the solution.
       Vector w{};
       for (std::size_t i = 0; i < n_; ++i)
         w[i] = refinements > 0 ? magnitude(image[i]) : 1.2 * magnitude(image[i]) + 1e-15 * (1 + std::fabs(at_.u[i]));
@@ -448,7 +451,7 @@ class ImplicitSystem::Krawczyk {
     }
     return false;
   }
-  /// A sufficient test of convergence. With C as above for a ball of the weighted maximum norm |x| = max |x_i| / w_i
+  /// A sufficient test of convergence. With C = I - Y J over a ball of the weighted maximum norm |x| = max |x_i| / w_i
   /// around the solution that contains the box, and |C| w <= rho w, the distance of the iterates from the solution
   /// shrinks by a factor of at most 2 rho / (1 - rho), which is less than 1 for rho < 1/3. As no Jacobian in the ball
   /// is singular, their determinants have the same sign.
@@ -471,7 +474,7 @@ class ImplicitSystem::Krawczyk {
     }
     return false;
   }
-  /// Lower and upper bound of the norm of Newton::solve() for a change of the unknowns in a box.
+  /// Lower and upper bound of Newton::norm() for all changes in the box `change` and all unknowns in the box `box`.
   std::array<double, 2> norm(const Box& change, const Box& box) const {
     std::array<double, 2> bounds{};
     for (std::size_t i = 0; i < n_; ++i)

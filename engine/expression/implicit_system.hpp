@@ -14,7 +14,7 @@
 
 namespace pkm::expression {
 
-/// Immutable and thread-safe.
+/// The system f(u, a) = 0 with unknowns u and operands a. Immutable and thread-safe.
 class ImplicitSystem {
  public:
   static constexpr std::size_t kMaxUnknowns = 6;

@@ -72,7 +72,8 @@ S hyperbolic_sine(const S& x) {
     const S e = exp(x);
     return (e - 1.0 / e) * 0.5;
   }
-  // Use the Taylor series x + x^3/3! + ... + x^13/13!, because e^x - e^-x would suffer from cancellation for these x.
+  // If |x| <= 0.5, use the Taylor series of sinh, x + x^3/3! + ... + x^13/13!, because e^x - e^-x would suffer from
+  // cancellation.
   const S q = x * x;
   S sum = q * (1.0 / 156) + 1.0;
   for (const double inverse : {1.0 / 110, 1.0 / 72, 1.0 / 42, 1.0 / 20, 1.0 / 6}) sum = q * inverse * sum + 1.0;

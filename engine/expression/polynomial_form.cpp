@@ -267,7 +267,7 @@ class NormalForm {
     if (is_nonnegative(negated_factor(b.node()))) return conjunction(clause({f->A}), clause({sum(*AA, negated(*BBQ))}));
     if (is_nonnegative(b.node())) return clause({f->A, sum(*BBQ, negated(*AA))});
     if (!squares_) return {};
-    // If the sign of b is unknown, combine the two cases b >= 0 and b <= 0 in conjunctive normal form.
+    // If the sign of B is unknown, combine the two cases B >= 0 and B <= 0 in conjunctive normal form.
     const Coefficients R = sum(*AA, negated(*BBQ));
     return conjunction(conjunction(clause({f->A, f->B}), clause({f->A, negated(R)})), clause({f->B, R}));
   }

@@ -165,8 +165,8 @@ Term greatest_eigenvalue(const TermMatrix& A) {
     for (std::size_t i = 1; i < of.rows(); ++i) sum = sum + of(i, i);
     return sum;
   };
-  // Compute it by repeated squaring of A, whose trace is scaled to 1 before each step: for the maximum eigenvalue
-  // lambda, log lambda = sum of log(t_k) / 2^k, where t_k is the trace of the k-th square before it is scaled.
+  // Compute the maximum eigenvalue lambda by repeated squaring of A, whose trace is scaled to 1 before each step:
+  // log lambda = sum of log(t_k) / 2^k, where t_k is the trace of the k-th square before it is scaled.
   TermMatrix power = A;
   Term sum = Term(A.graph(), 0.0);
   for (int k = 0; k <= kSquarings; ++k) {

@@ -37,7 +37,7 @@ struct NearestBodies {
 };
 
 /// The two bodies with the minimum clearance at a pose; std::nullopt if no clearance is tested.
-/// @param inputs  see capsules_at()
+/// @param inputs  values of the graph's inputs, including the pose
 template <class S>
 std::optional<NearestBodies<S>> nearest_bodies(const Evaluation& evaluation, const std::vector<S>& inputs,
                                                const Obstacles& obstacles);
@@ -55,7 +55,8 @@ class ClearanceBatch {
   ClearanceBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode, double limit,
                  const Obstacles& obstacles);
 
-  /// See PoseBatch::start() and PoseBatch::add().
+  /// start() evaluates what does not depend on the swept coordinates, and empties the batch of poses. add() adds a pose
+  /// and returns true if the batch is full.
   void start(const std::vector<double>& inputs, ClearanceScratch& scratch) const;
   bool add(const Pose<double>& pose, ClearanceScratch& scratch) const { return batch_.add(pose, scratch.poses); }
   /// Calls visit(k), in ascending order, for the index k in the batch of each pose that violates the limit; then

@@ -22,7 +22,8 @@ using expression::Node;
 using generic::Evaluation;
 
 // Minimum inverse condition number of the Jacobian at test poses in double and in single precision. Rounding errors
-// grow near singularities. If too few such poses are found, the number is lowered step by step down to the last value.
+// grow near singularities. If too few such poses are found, the minimum is lowered in steps, but not below
+// kLeastConditioning.
 constexpr double kMinConditioning = 2e-2, kMinConditioningOfFloats = 1e-1, kLeastConditioning = 1e-3;
 // distance in each coordinate [m, rad] between a test pose and the start of its forward kinematics
 constexpr double kStep = 1e-5;

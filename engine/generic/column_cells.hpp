@@ -38,7 +38,7 @@ struct CellRanges {
 /// undefined counts as violated. If the constraint can have holes (convex, any), the holes of all columns are
 /// overwritten; otherwise they are left unchanged.
 /// @param count            a multiple of kLanes
-/// @param registers, rows  see expression::BatchStage
+/// @param registers, rows  values of operands: one number for all columns, or a row with one number per column
 /// @return true if a column has a hole inside its range
 template <InstructionSet set>
 bool contract(const ColumnConstraint& constraint, const double* registers, const double* rows, const ColumnGrid& grid,

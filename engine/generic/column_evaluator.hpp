@@ -9,7 +9,8 @@
 
 namespace pkm::generic {
 
-/// Makes the evaluator of columns for a plan. Throws std::invalid_argument with a message if they do not support it.
+/// Makes the evaluator of columns for a plan. Throws std::invalid_argument with a message if columns do not support the
+/// plan.
 /// @param evaluation  must outlive the evaluator
 std::unique_ptr<const WorkspaceEvaluator> prepare_columns(const Evaluation& evaluation, const WorkspacePlan& plan,
                                                           const ColumnOptions& columns, const FieldRequest& request);

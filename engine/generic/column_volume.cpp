@@ -153,15 +153,15 @@ SlicePlan ColumnVolume::choose_slices() const {
   const std::vector<double> inputs = inputs_of_default_design();
   IntegralScratch scratch;
   const SlicePlan* best = nullptr;
-  // Limit of the work of the search: number of interval operations, or number of surfaces times number of slices. The
-  // limit corresponds to about one second.
+  // Least work of the plans analysed so far, and limit of the work for the next plan: number of interval operations, or
+  // of slices times surfaces. The first limit corresponds to about one second.
   long least = has_curves ? 100'000'000 : 10'000'000;
   for (const SlicePlan& plan : plans_) {
     const auto per_slice = static_cast<long>(plan.surfaces.size() + 8 * plan.independent.back().size());
     NestedIntegral::Budget budget;
     (has_curves ? budget.operations : budget.evaluations) = has_curves ? least : std::max(1L, least / per_slice);
     const Integral<double> found = NestedIntegral(plan, tolerance).measure(inputs, scratch, budget);
-    // If the workspace of this design is empty, the work gives no information about other designs.
+    // If the workspace of the default design is empty, the work gives no information about other designs.
     if (!has_curves && &plan == &first && found.value == 0) return first;
     const long work = has_curves ? scratch.column.operations : found.evaluations * per_slice;
     if (work >= least) continue;
@@ -240,7 +240,8 @@ void ColumnVolume::place_nodes(std::span<const double> inputs, bool for_gradient
     slices().measure(inputs, scratch.integral);
 }
 
-/// Places the nodes of the samples between the ends of the ranges of corner curves.
+/// Places the quadrature nodes that become samples between the critical values of the outer coordinate, which corner
+/// curves find.
 /// @param is_measured  true: `scratch.corner_curves` holds the volume of this design by corner_curves_
 /// @return false if corner curves do not support the slices or the design
 bool ColumnVolume::place_between_ranges(std::span<const double> inputs, bool is_measured, Scratch& scratch) const {

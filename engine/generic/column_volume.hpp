@@ -75,9 +75,9 @@ class ColumnVolume {
   /// Computes the volume by corner curves; absent if corner curves cannot integrate the slices in any order of the
   /// coordinates.
   std::optional<corner_curves::Volume> corner_curves_;
-  /// Corner curves of the plan of slices(). The ends of their ranges divide the outer coordinate before the nodes of
-  /// samples are placed. Absent if no samples are needed, if corner curves cannot integrate this plan, or if the plan
-  /// is that of corner_curves_.
+  /// Corner curves of the plan of slices(). The critical values that they find divide the range of the outer coordinate
+  /// before the quadrature nodes that become samples are placed. Absent if no samples are needed, if corner curves
+  /// cannot integrate this plan, or if the plan is that of corner_curves_.
   std::optional<corner_curves::Volume> ranges_for_nodes_;
   bool shares_ranges_ = false;  ///< true: the plan of slices() is that of corner_curves_
 };

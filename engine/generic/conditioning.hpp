@@ -41,7 +41,7 @@ class SampleConditioning {
   SampleConditioning(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode)
       : e_(evaluation), batch_(evaluation.model, evaluation.model.jacobian, swept, mode) {}
 
-  /// Prepares the evaluation for one design, like PoseBatch::start().
+  /// Evaluates, for one design, the characteristic lengths and what does not depend on the swept coordinates.
   template <class S>
   void start(std::span<const S> parameters, const std::vector<S>& inputs, ConditioningScratch<S>& scratch) const {
     scratch.lengths = characteristic_lengths(e_, parameters);

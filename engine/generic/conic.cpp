@@ -24,6 +24,7 @@ struct Moments {
   double F, J0, J1, J2;
 };
 
+/// Computes the integrals F, J0, J1 and J2 of R, 1/R, w/R and w^2/R.
 /// @param r, r2  values of R at the lower and the upper endpoint
 /// @param curvature  the coefficient of w^2 in q
 /// With y = q_2 h^2 / s^2, s = r + r2, d = r2 - r, and Y = y / (1 + sqrt(1 - y))^2,
@@ -93,7 +94,7 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
     size = B.scale * A.scale;
   }
   const double d1 = std::fabs(d[2]) + std::fabs(d[4]);
-  // In this case, the conics do not intersect in the square.
+  // If the linear combination d0(t) + d1(t) s has no zero in the square, the conics do not intersect there.
   if (std::fabs(d[0]) > std::fabs(d[1]) + std::fabs(d[3]) + d1 * (1 + 1e-9)) return 0;
   if (d1 <= kNegligibleCoefficient * size) {
     if (std::fabs(d[1]) + std::fabs(d[3]) <= kNegligibleCoefficient * size)

@@ -9,7 +9,7 @@
 
 namespace pkm::generic {
 
-/// Thread-safe; keeps the most recent results.
+/// Finds the search box of a design by interval contraction. Thread-safe; stores the most recent results.
 class ContractedBox {
  public:
   /// @param inputs  enclosures of the values of the model's inputs for all designs
@@ -30,7 +30,7 @@ class ContractedBox {
   bounds::IntervalBox search(const std::vector<Interval>& inputs, const bounds::IntervalBox& start) const;
 
   std::vector<Interval> designs_;
-  std::vector<bool> turns_;           ///< by coordinate: it is an angle
+  std::vector<bool> turns_;           ///< by coordinate, true: the coordinate is an angle
   std::vector<std::size_t> lengths_;  ///< indices of the parameters that are lengths
   bounds::FeasibleHull hull_;
 
@@ -45,9 +45,10 @@ class ContractedBox {
 
 /// Values of the model's inputs for all designs between the minimum and maximum of every parameter.
 std::vector<Interval> inputs_of_all_designs(const Model& model);
-/// Range in which a contracted coordinate is searched unless the file gives its reach: a full rotation or everything.
+/// Range in which a contracted coordinate is searched unless the file gives its reach: a full rotation for an angle,
+/// all numbers for other coordinates.
 Interval widest_range(const Model& model, std::size_t coordinate);
-/// What to write if a coordinate has no box.
+/// Advice for an error message: what the user can write in the file if a coordinate has no search box.
 std::string advice_for_box(const std::string& coordinate);
 
 }  // namespace pkm::generic

@@ -1,4 +1,4 @@
-// Facts about a design of a mechanism file, see engine/mechanism/design_facts.hpp.
+// Facts about a design of a mechanism file: joint ranges, masses of bodies, and drives.
 #pragma once
 
 #include "engine/generic/evaluation.hpp"
@@ -9,7 +9,7 @@ namespace pkm::generic {
 std::vector<std::optional<std::array<double, 2>>> joint_ranges(const Evaluation& e, std::span<const double> parameters);
 std::vector<std::pair<std::string, double>> body_masses(const Evaluation& e, std::span<const double> parameters);
 
-/// Finds the drives of a design, as DesignFacts::drives(). Immutable.
+/// Finds joint, point, axis and position of each drive of a design at a pose that assembles. Immutable.
 class DrivePlaces {
  public:
   /// @param e     must outlive this object
@@ -19,9 +19,9 @@ class DrivePlaces {
 
  private:
   std::size_t coordinates_;                ///< position of the coordinates among the inputs
-  std::vector<const JointNodes*> driven_;  ///< joints with drives; those of two parallel rods share one
-  expression::Program program_;            ///< outputs: point, axis and position of each of them
-  std::vector<double> inputs_;             ///< of the design; those of the coordinates are 0
+  std::vector<const JointNodes*> driven_;  ///< joints with drives; joints of parallel rods may share a drive
+  expression::Program program_;            ///< outputs: point, axis and position of each driven joint
+  std::vector<double> inputs_;  ///< values of the graph's inputs for the design; those of the coordinates are 0
 };
 
 }  // namespace pkm::generic

@@ -21,7 +21,7 @@ class EdgePlan {
   EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::vector<int>& swept,
            const std::vector<std::optional<std::array<double, 2>>>& box, double tolerance);
 
-  /// Reason why the workspace is not an intersection of such bodies; empty if it is.
+  /// Reason why the workspace is not an intersection of slides, cranks and quadrics; empty if it is.
   const std::string& why_not() const { return why_not_; }
 
   struct Scratch;

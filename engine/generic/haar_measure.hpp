@@ -19,7 +19,7 @@ class HaarMeasure final : public Orientations {
   /// The reason why the orientations of a mechanism have no measure: its platform does not rotate by three coordinates
   /// about axes of which adjacent ones differ. Empty if they have one.
   static Unsupported refusal(const Model& model);
-  /// The model must not be refused.
+  /// @param model  a model for which refusal() is empty
   explicit HaarMeasure(const Model& model);
 
   const std::vector<int>& angles() const override { return angles_; }
@@ -30,12 +30,12 @@ class HaarMeasure final : public Orientations {
   /// Measure [sr rad] of a cell with these ends of its sides.
   double measure_of_cell(const std::array<std::array<double, 2>, 3>& cell) const;
   bool is_principal(double middle_angle) const;
-  /// The other triple of angles of the same orientation.
+  /// The second triple of angles that describes the same orientation as `angles`.
   std::array<double, 3> equivalent(const std::array<double, 3>& angles) const;
 
   std::vector<int> angles_;
   bool is_proper_euler_ = false;    ///< the first and the third axis are the same
-  expression::Program directions_;  ///< outputs: the columns of E
+  expression::Program directions_;  ///< outputs: columns of E, which maps angle rates to the angular velocity
   std::array<std::size_t, 3> inputs_{};
   std::size_t count_ = 0;  ///< number of inputs of the model's graph
 };

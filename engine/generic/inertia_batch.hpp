@@ -16,17 +16,18 @@ struct InertiaScratch {
 class InertiaBatch {
  public:
   /// @param evaluation  evaluation of a model with bodies
-  /// @param rotors      see FieldRequest::rotors
+  /// @param rotors      inertia of the drive train of each joint, reflected to the joint; empty: none
   InertiaBatch(const Evaluation& evaluation, const std::vector<int>& swept, std::size_t mode,
                const std::vector<double>& rotors);
 
-  /// Prepares the evaluation for one design, like PoseBatch::start().
+  /// Evaluates the operations that do not depend on the swept coordinates, for one design, and empties the batch.
   void start(const std::vector<double>& inputs, InertiaScratch& scratch) const;
   /// Adds a pose to the batch. Its values are appended to the fields of the result when the batch is full or finish()
   /// is called.
   void add(const Pose<double>& pose, InertiaScratch& scratch, WorkspaceResult<double>& to) const;
   void finish(InertiaScratch& scratch, WorkspaceResult<double>& to) const;
-  /// Overloads for poses with derivatives. They evaluate the poses one after the other, without SIMD.
+  /// Overloads of start(), add() and finish() for poses with derivatives. They evaluate the poses one after the other,
+  /// without SIMD.
   void start(const std::vector<Dual4>& inputs, InertiaScratch& scratch) const;
   void add(const Pose<Dual4>& pose, InertiaScratch& scratch, WorkspaceResult<Dual4>& to) const;
   void finish(InertiaScratch&, WorkspaceResult<Dual4>&) const {}

@@ -1,5 +1,5 @@
-// The operations have the order of eliminate() and substitute_back() in engine/math/small_matrix.hpp, so that the
-// results have the same bits.
+// SIMD kernel of find_joint_inertia(). Its operations have the order of eliminate() and substitute_back() in
+// engine/math/small_matrix.hpp, so that the results have the same bits as those of scalar arithmetic.
 #include "engine/dynamics/coupling_indices.hpp"
 #include "engine/generic/joint_inertia.hpp"
 #include "engine/geometry/singular.hpp"
@@ -59,7 +59,7 @@ struct LuDecomposition {
       }
     }
   }
-  /// Replaces b by the solution X of A X = b.
+  /// Replaces b by the solution X of A X = b, where A is the decomposed matrix.
   [[gnu::always_inline]] inline void solve(L (&b)[n][n]) const {
     for (int k = 0; k < n; ++k) {
       exchange(b, k, 0);

@@ -15,8 +15,8 @@ PoseReport inspect_pose(const Evaluation& evaluation, std::span<const double> pa
 /// @param inputs  values of the graph's inputs, including the pose
 bool assembles_at(const Evaluation& evaluation, const std::vector<double>& inputs);
 
-/// Variant of inspect_pose() for a pose that is known to be feasible: without margins, angles and quantities, and
-/// without heap allocation.
+/// Kinematic analysis of a pose that is known to be feasible, without margins, angles and quantities, and without heap
+/// allocation.
 /// @param inputs  values of the graph's inputs, including the pose; the joint positions are written to it
 PoseReport inspect_sample(const Evaluation& evaluation, std::span<const double> parameters, const Pose<double>& pose,
                           std::span<double> inputs);

@@ -186,7 +186,7 @@ struct SolidNodes {
   std::string name;
   /// Indices in Model::bodies of the bodies that this solid consists of; empty: the solid has no mass.
   std::vector<std::size_t> bodies{};
-  /// Fraction of the mass and inertia of these bodies that belongs to this solid: 1/2 for each of two parallel rods.
+  /// Fraction of the mass and inertia of `bodies` that belongs to this solid: 1/2 for each of two parallel rods.
   double share = 1;
   std::array<Node, 3> point;  ///< a point that is fixed to the solid
   /// A vector along the body, which rotates with it (without spin about the vector); std::nullopt if there is none.
@@ -321,7 +321,7 @@ struct Model {
   /// By coordinate, whether its range is computed by contraction of the constraints; `box` is then Inputs::range_end().
   std::vector<bool> is_contracted;
   std::shared_ptr<const ContractedBox> contracted_box;  ///< null if no coordinate is contracted
-  /// Constraints >= 0 on the distances that the limbs can span, which follow from the other ones.
+  /// Constraints >= 0 on the distances that the limbs can span, which follow from the other constraints.
   std::vector<Node> reach_constraints;
   /// Range of each coordinate outside of which no pose is feasible; std::nullopt if the file does not define it.
   std::vector<std::optional<std::array<Node, 2>>> reach;

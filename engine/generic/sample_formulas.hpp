@@ -18,13 +18,14 @@ class SampleFormulas {
   SampleFormulas(const Evaluation& evaluation, const std::vector<const PoseQuantity*>& fields,
                  const std::vector<int>& swept, std::size_t mode);
 
-  /// Prepares the evaluation for one design, like PoseBatch::start().
+  /// Evaluates the operations that do not depend on the swept coordinates, for one design, and empties the batch.
   void start(const std::vector<double>& inputs, FormulaScratch& scratch) const { batch_.start(inputs, scratch.poses); }
   /// Adds a pose to the batch. Its values, NaN where a formula is undefined, are appended to the fields of the result
   /// when the batch is full or finish() is called.
   void add(const Pose<double>& pose, FormulaScratch& scratch, WorkspaceResult<double>& to) const;
   void finish(FormulaScratch& scratch, WorkspaceResult<double>& to) const;
-  /// Overloads for poses with derivatives. They evaluate the poses one after the other, without SIMD.
+  /// Overloads of start(), add() and finish() for poses with derivatives. They evaluate the poses one after the other,
+  /// without SIMD.
   void start(const std::vector<Dual4>& inputs, FormulaScratch& scratch) const {
     batch_.start<Dual4>(inputs, scratch.dual_registers);
   }

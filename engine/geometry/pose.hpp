@@ -42,8 +42,7 @@ using NamedValues = std::vector<std::pair<std::string, double>>;
 struct PoseReport {
   bool assembles = false;  ///< the inverse kinematics has a solution in the requested working mode
   bool feasible = false;   ///< the mechanism can be assembled at the pose, and every margin is >= 0
-  std::string reason;      ///< reason why the mechanism cannot be assembled, or the first violated margin; "" if the
-                           ///< pose is feasible
+  std::string reason;      ///< why the mechanism cannot be assembled, or the first violated margin; "" if feasible
   /// Joint positions in the order of MechanismInfo::joints; NaN if this joint has no solution.
   std::optional<AxisVector<double>> joints;
   /// Jacobians: Jq qdot = G V for joint rates qdot and coordinate rates V; J = Jq^-1 G, absent if Jq is singular.

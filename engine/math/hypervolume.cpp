@@ -33,7 +33,7 @@ std::vector<Point<N>> sorted_points(std::span<const double> points, const Point<
     }
     if (is_inside) inside.push_back(point);
   }
-  // The test saves time because archives are often sorted already.
+  // The points of a study's archive are often sorted already; the test then saves the time for sorting.
   if (!std::is_sorted(inside.begin(), inside.end())) std::sort(inside.begin(), inside.end());
   return inside;
 }

@@ -193,7 +193,7 @@ inline Interval intersection(const Interval& x, const Interval& y) {
   const double lower = std::max(x.lower, y.lower), upper = std::min(x.upper, y.upper);
   return lower <= upper ? Interval(lower, upper, std::min(x.decoration, y.decoration)) : Interval::empty();
 }
-/// The smallest interval that contains both. Combined with an empty interval, the result is `partial`.
+/// The smallest interval that contains two intervals. Combined with an empty interval, the result is `partial`.
 Interval hull(const Interval& x, const Interval& y);
 
 }  // namespace pkm

@@ -20,7 +20,8 @@ struct QuadraticSolution {
   Eigen::VectorXd multipliers;  ///< m values >= 0, one per constraint, with B x + c = A' multipliers at the solution
 };
 
-/// Solves a program for which a point with A x > b exists. Elements should be of the order of 1: limits are absolute.
+/// Solves a program for which a point with A x > b exists. Elements should be of the order of 1, because the
+/// tolerances of the solution are absolute.
 QuadraticSolution solve(const QuadraticProgram& program);
 
 }  // namespace pkm

@@ -254,8 +254,8 @@ B solve(A a, B b) {
 /// Maximum number of coordinates of a pose, and of actuated joints.
 inline constexpr std::size_t kMaxCoordinates = 6, kMaxJoints = 8;
 
-/// Vector with one element per pose coordinate or per actuated joint, and matrix whose rows and columns are numbered in
-/// this way.
+/// Vector with one element per pose coordinate or per actuated joint, and matrix each of whose dimensions has one index
+/// per pose coordinate or per actuated joint.
 template <class S>
 using AxisVector = MatrixUpTo<S, kMaxJoints>;
 template <class S>

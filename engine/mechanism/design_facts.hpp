@@ -1,4 +1,4 @@
-// Facts about a design that pages show: ranges of joints, masses of bodies, places of drives.
+// Facts about a design that pages show: ranges of joints, masses of bodies, positions of drives.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@ namespace pkm {
 struct PlacedDrive {
   std::size_t joint;           ///< index in MechanismInfo::joints
   double position;             ///< position of the joint [m or rad]
-  bool rotates;                ///< true: about `axis` through `point`; false: along `axis`
+  bool rotates;                ///< true: the drive rotates about `axis` through `point`; false: it moves along `axis`
   bool on_base;                ///< true: the drive moves a body relative to the base
-  Point3<double> point, axis;  ///< a point of the joint, on the slide if it is prismatic; a unit vector
+  Point3<double> point, axis;  ///< a point of the joint (of the slide if it is prismatic); unit vector of its axis
 };
 
 class DesignFacts {

@@ -173,7 +173,8 @@ double thermal_reserve(const MovesOfMotion& moves, const DesignWithLimits& desig
 /// exceeds its continuous torque.
 void limit_continuous_torque(const MovesOfMotion& moves, const DesignWithLimits& design, ShortestTimes& found) {
   constexpr double kSlowest = 1e-8;
-  // Violations up to this, relative to the squared torque, are within the accuracy of reduce_torques() and are ignored.
+  // Violations of a continuous torque up to this, relative to the squared torque, are within the accuracy of
+  // reduce_torques() and are ignored.
   constexpr double kRounding = 1e-9;
   std::vector<MoveStates<double>> states;
   for (std::size_t k = 0; k < found.moves.size(); ++k) states.push_back(states_of(moves.moves()[k], found.moves[k]));

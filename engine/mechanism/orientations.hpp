@@ -13,11 +13,12 @@ namespace pkm {
 /// have the measure 8 pi^2.
 inline constexpr const char* kOrientationUnit = "sr rad";
 
+/// Three coordinates that are the angles of the platform's orientation, and the measure of sets of orientations.
 /// Immutable and thread-safe.
 class Orientations {
  public:
   virtual ~Orientations() = default;
-  /// The three angles, as indices of coordinates.
+  /// The three angles that describe an orientation, as indices of coordinates.
   virtual const std::vector<int>& angles() const = 0;
   /// The principal ranges of the angles, which contain every orientation once.
   virtual Box principal_ranges() const = 0;
@@ -26,7 +27,7 @@ class Orientations {
   virtual double measure(const VoxelMap& map) const = 0;
 };
 
-/// Interface of mechanisms that may have orientations.
+/// Interface of mechanisms that can measure sets of orientations of the platform if three angles describe it.
 class WithOrientations {
  public:
   virtual ~WithOrientations() = default;

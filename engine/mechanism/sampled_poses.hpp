@@ -28,9 +28,9 @@ class SampledPoses {
   std::vector<std::array<double, 2>> ranges_;
 };
 
-/// Finds a feasible pose in the middle of the workspace: among the first feasible poses of the sequence, the one that
-/// is closest to their mean, relative to the ranges of the coordinates. std::nullopt if no feasible pose was found, or
-/// if the ranges are unknown.
+/// Finds a feasible pose in the middle of the workspace: among the first feasible poses of a SampledPoses sequence, the
+/// one that is closest to their mean, relative to the ranges of the coordinates. std::nullopt if no feasible pose was
+/// found, or if the ranges are unknown.
 /// @param mode  one of MechanismInfo::modes
 std::optional<Pose<double>> central_pose(const Mechanism& mechanism, std::span<const double> parameters,
                                          const LimitSpec& limits, const std::string& mode);

@@ -137,7 +137,7 @@ ProfileWithDerivatives differentiate(const SpeedProfile& profile, std::span<cons
     const BindingLimit& upper = profile.backward[i].upper;
     BindingLimit lower = profile.backward[i].lower;
     // If the squared speed at the next point has to be 0, both ends of the interval of path accelerations coincide for
-    // all x below the root; the limit of the deceleration determines the root.
+    // all controllable squared speeds; the limit of the deceleration determines the largest of these.
     if (upper.by == By::next && lower.by == By::floor) lower.by = By::deceleration;
     const double x = profile.controllable[i], step2 = 2 * profile.steps[i];
     if (upper.by == By::speed) {

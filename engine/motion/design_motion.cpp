@@ -9,8 +9,7 @@ std::vector<DualMotionSample> sample_with_derivatives(const DesignMotion& motion
                                                       std::size_t count) {
   constexpr int kDirections = 4;      // number of derivatives of Dual4
   constexpr double kStep = 1e-4;      // step of the central differences, relative to the magnitude of the parameter
-  constexpr double kSmallest = 0.01;  // magnitude [SI] that is assumed for a parameter with a smaller magnitude,
-                                      // including 0
+  constexpr double kSmallest = 0.01;  // magnitude [SI] that is assumed for a parameter with a smaller one, such as 0
   std::vector<double> values;
   for (const Dual4& parameter : design) values.push_back(parameter.a);
   const auto sample_at = [&](int k, double distance) {

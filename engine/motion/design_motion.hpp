@@ -31,8 +31,8 @@ struct DualMotionSample {
   AxisVector<Dual4> velocity, acceleration;  ///< first and second time derivative of the pose
 };
 
-/// Samples of the motion of a design, as sample() takes them. The derivatives are central differences of fourth order;
-/// their relative error is about 1e-11.
+/// `count` samples of the motion of a design at equidistant times, including the start and the end. The derivatives are
+/// central differences of fourth order; their relative error is about 1e-11.
 /// @param design  all parameters of the mechanism
 std::vector<DualMotionSample> sample_with_derivatives(const DesignMotion& motion, std::span<const Dual4> design,
                                                       std::size_t count);

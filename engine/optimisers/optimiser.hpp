@@ -53,8 +53,8 @@ struct Generation {
   /// Maximum number of evaluations still to be made; nullopt: the evaluation limit of the stage minus the evaluations
   /// made.
   std::optional<std::int64_t> left = {};
-  /// True: this MPI rank alone reports the generation. The evaluations of the ranks are compared only at the end of the
-  /// stage.
+  /// True if this MPI rank alone reports the generation, and the evaluations of all ranks are compared only at the end
+  /// of the stage.
   bool alone = false;
   const Front* front = nullptr;  ///< the Pareto front so far, with several objectives; otherwise null
 };

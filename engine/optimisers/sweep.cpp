@@ -106,8 +106,8 @@ class Sweep final : public Optimiser {
   }
 
  private:
-  // Each of these two functions evaluates its grid. It returns false if the monitor stopped it before the last
-  // generation.
+  // Evaluates the designs of a one-at-a-time sweep. Returns false if the monitor stopped the sweep before its last
+  // generation, as does all_combinations() for a full-factorial sweep.
   bool one_at_a_time(const StageInput& input, SweepRecorder& recorder, EvaluationTable& table) const {
     const DesignSpace& space = input.problem.space();
     std::vector<double> centre(space.dimension());

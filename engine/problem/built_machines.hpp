@@ -87,8 +87,8 @@ struct MachineValues {
   std::size_t machines = 0;
   std::vector<double> objectives;   ///< machines x objectives of BuiltMachines::problem
   std::vector<double> margins;      ///< machines x margins of BuiltMachines::problem
-  std::vector<double> derivatives;  ///< machines x (objectives + margins) x (1 + directions): smooth values and their
-                                    ///< derivatives
+  std::vector<double> derivatives;  ///< machines x (objectives + margins) x (1 + parameters): smooth approximation of
+                                    ///< each value, then its derivatives with respect to parameters
 };
 
 /// The statistic of the values of one quantity as a convex combination of them: pairs of an index and a weight. A

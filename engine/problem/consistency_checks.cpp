@@ -19,8 +19,9 @@ using Interval1D = std::array<double, 2>;
 
 // Maximum number n of variables for which the checks use the 2^n vertices of the bounds.
 constexpr std::size_t kMaxVariables = 10;
-// A box is reported if it lies this far outside the range that the vertex designs reach, relative to the size of the
-// range. The tolerance is necessary because designs inside the bounds may reach farther than those at the vertices.
+// The box of a workspace is reported if it lies this far outside the range of poses that the designs at the vertices of
+// the variables' bounds reach, relative to the size of the range. The tolerance is necessary because designs inside the
+// bounds may reach farther.
 constexpr double kReachTolerance = 0.1;
 
 const std::string kContradiction = "contradiction";
@@ -88,7 +89,8 @@ void compare_limits(const ProblemParts& parts, const std::vector<std::vector<dou
   }
 }
 
-/// Finds values of fixed coordinates that no vertex design reaches.
+/// Finds values of fixed coordinates that none of the designs reaches; these are the designs at the vertices of the
+/// bounds.
 void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double>>& designs, const WorkspacePlan& plan,
                  const std::string& table, bool is_contradiction, Findings& found) {
   for (const FixedCoordinate& fixed : plan.fixed) {
@@ -110,8 +112,8 @@ void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double
   }
 }
 
-/// Extends the hull by the ranges of the swept coordinates of the designs: the ranges of a design are the box that a
-/// workspace analysis uses if the plan has no box.
+/// Extends `hull` by the ranges of the swept coordinates for each design: the box of poses that a workspace analysis of
+/// the design uses if the plan has no box.
 void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<double>>& designs, WorkspacePlan plan,
                     Box& hull) {
   std::visit([](auto& method) { method.box.reset(); }, plan.method);
@@ -129,7 +131,8 @@ void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<do
   }
 }
 
-/// Finds coordinates in which the box of a plan lies entirely outside the ranges that the vertex designs reach.
+/// Finds coordinates in which the box of a plan lies entirely outside the ranges that the designs reach; these are the
+/// designs at the vertices of the bounds.
 void check_box(const ProblemParts& parts, const std::vector<std::vector<double>>& designs, const WorkspacePlan& plan,
                const std::string& table, bool is_contradiction, Findings& found) {
   if (!plan.box()) return;

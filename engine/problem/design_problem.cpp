@@ -42,7 +42,7 @@ struct DesignProblem::OtherRows {
   std::map<std::vector<std::size_t>, std::shared_ptr<const DesignProblem>> problems;
 };
 
-/// Scratch memory for the problems with other rows of the catalogues, by problem.
+/// Scratch memory for each problem that differs from this one only in the rows chosen from the catalogues.
 struct ScratchOfRows {
   std::map<const DesignProblem*, Scratch> of;
 };

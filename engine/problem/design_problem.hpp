@@ -67,7 +67,8 @@ struct ProblemParts {
   std::shared_ptr<ExternalFunctions> functions = std::make_shared<ExternalFunctions>();
   /// Built machines, if a quantity is a statistic over them; otherwise null.
   std::shared_ptr<const BuiltMachines> built = nullptr;
-  /// Parameters of single limbs that change together with the common parameter in derivatives with respect to it.
+  /// Parameters of single limbs that are tied to a parameter that all limbs share: derivatives with respect to
+  /// the shared parameter include their change.
   std::vector<LimbCopy> copies = {};
 };
 
@@ -99,8 +100,8 @@ class DesignProblem final : public Problem {
   bool needs_completion() const override { return !calls_.empty(); }
   /// The external functions that the quantities call, each listed once.
   const std::vector<std::string>& external_calls() const { return calls_; }
-  /// The reason why the problem has no derivatives, if a workspace analysis in use or a quantity has none; empty if it
-  /// has.
+  /// The reason why the problem has no derivatives, if a workspace analysis in use or a quantity has none; empty if the
+  /// problem has derivatives.
   Unsupported why_no_derivatives() const override;
 
   const ProblemParts& parts() const { return parts_; }
@@ -123,7 +124,7 @@ class DesignProblem final : public Problem {
   std::vector<double> derivatives(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
-  /// Cache of the problems with other rows of the catalogues.
+  /// Cache of the problems that differ from this one only in the rows chosen from the catalogues.
   struct OtherRows;
   /// Results of the workspace analyses of a design: first that of the workspace, then one for each region. The result
   /// of an analysis that no quantity uses is empty.
@@ -145,8 +146,9 @@ class DesignProblem final : public Problem {
                         std::span<double> derivatives) const;
   /// Value of a statistic over the built machines, whose values are in the buffers of `scratch`.
   double statistic(const SampledValue& sampled, Scratch& scratch) const;
-  /// Statistic of the smooth approximations of the machines' values, with derivatives: by the directions with indices
-  /// [first, first + count) of `directions` ones.
+  /// Statistic of the smooth approximations of the machines' values, with derivatives.
+  /// @param first, count  the derivatives are with respect to the parameters with indices first to first + count - 1
+  /// @param directions    number of parameters with respect to which derivatives of the values are known
   Dual4 smooth_statistic(const SampledValue& sampled, std::size_t first, std::size_t count, std::size_t directions,
                          Scratch& scratch) const;
   /// Reason why a built machine of this design cannot be evaluated; "" if all can.

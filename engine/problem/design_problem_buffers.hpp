@@ -19,7 +19,7 @@ struct DesignProblem::Buffers {
   WorkspaceResults<double> workspaces;
   WorkspaceResults<Dual4> dual_workspaces;
   MachineValues machines;        ///< values of all machines built to the design that was evaluated last
-  Yield yield;                   ///< yield of these machines, if the problem has a yield
+  Yield yield;                   ///< yield of `machines`, if the problem has a yield
   std::vector<Scratch> workers;  ///< scratch memory for the machines, by worker
   std::vector<double> machine;   ///< parameters of the machine that is being evaluated
 };

@@ -33,7 +33,8 @@ void DesignProblem::evaluate_machine(std::span<const double> parameters, std::op
   };
   for (std::size_t i = 0; i < objectives.size(); ++i) objectives[i] = value(parts_.objectives[i]);
   for (const auto& q : parts_.workspace_margins) {
-    // A robust constraint of a study with a yield is an objective of the machine, too.
+    // If a study with a yield has a robust constraint, its quantity is also an objective of BuiltMachines::problem,
+    // whose value is known here.
     const auto same = std::ranges::find(parts_.objectives, q.quantity, &NamedQuantity::quantity);
     const bool is_known = same != parts_.objectives.end();
     margins[margin++] =
@@ -44,8 +45,8 @@ void DesignProblem::evaluate_machine(std::span<const double> parameters, std::op
 void DesignProblem::evaluate_machines(std::span<const double> parameters,
                                       std::optional<std::span<const std::size_t>> by, Scratch& scratch) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  // Machines between two checks for a stop request, if a machine takes microseconds; longer evaluations check
-  // themselves.
+  // Number of machines evaluated between two checks for a stop request, if a machine takes microseconds; the evaluation
+  // of a machine that takes longer checks itself.
   constexpr std::size_t kMachinesPerCheck = 64;
   const ToleranceModel& tolerances = parts_.built->tolerances;
   const std::shared_ptr<const DesignProblem>& problem = parts_.built->problem;

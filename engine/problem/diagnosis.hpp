@@ -30,7 +30,7 @@ struct Diagnosis {
 std::vector<Reason> contradictions(const ProblemParts& parts);
 
 /// Requirements that are most likely mistakes, although they do not contradict each other: bounds that every design
-/// satisfies, or a list of values of which one is out of reach. One sentence each.
+/// satisfies, or a list of values of a fixed coordinate, of which one is out of reach. One sentence each.
 std::vector<std::string> consistency_warnings(const ProblemParts& parts);
 
 /// Diagnoses evaluated designs.

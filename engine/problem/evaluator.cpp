@@ -65,7 +65,8 @@ void evaluate_rows(const Problem& problem, EvaluationTable& table, std::size_t f
   }
 }
 
-// Completes the rows of ranges [first, end), which evaluate_rows() has evaluated.
+// Calls Problem::complete() for the rows of ranges [first, end), after evaluate_rows() has evaluated them, and sets
+// their times.
 void complete_rows(const Problem& problem, EvaluationTable& table,
                    const std::vector<std::pair<std::size_t, std::size_t>>& ranges) {
   if (!problem.needs_completion()) return;
@@ -245,7 +246,7 @@ void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTa
     for (std::size_t at = 0; at < each.size();) received += unpack_rows(each, at, table);
   PKM_EXPECTS(received == table.size() - first);
 
-  // The times have been exchanged: from here on every rank computes the same timings.
+  // All ranks have received the evaluation times of all rows: from here on every rank computes the same timings.
   const auto seconds_of = [&](Rows of) {
     return std::accumulate(table.seconds.begin() + static_cast<std::ptrdiff_t>(of.first),
                            table.seconds.begin() + static_cast<std::ptrdiff_t>(of.second), 0.0);
@@ -253,8 +254,8 @@ void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTa
   // Idle time that is accepted before rows are distributed dynamically: relative to the mean time of the threads, and
   // absolute [s].
   constexpr double kMaxIdleShare = 0.05, kMinIdleTime = 1e-3;
-  // Batches that take longer per thread are always distributed dynamically: unforeseen delays would cost more than the
-  // messages for claiming rows (at most 3 %).
+  // Batches that take longer than this per thread are always distributed dynamically: unforeseen delays would cost more
+  // than the messages for claiming rows (at most 3 %).
   constexpr double kMaxStaticTime = 0.1;  // [s]
   double longest = 0, threads = 0;
   for (std::size_t rank = 0; rank < ranks; ++rank) {

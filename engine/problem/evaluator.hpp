@@ -47,12 +47,13 @@ class ParallelEvaluator final : public Evaluator {
   /// Timings of the latest batch that was distributed among ranks. They are identical on every rank, so that all ranks
   /// choose the same distribution.
   struct BatchTimings {
-    double seconds_per_design = 0;  ///< 0: no such batch yet
-    bool imbalanced = true;         ///< static distribution by index would have left ranks idle
-    std::size_t local_batches = 0;  ///< later batches that every rank evaluated without communication
+    double seconds_per_design = 0;  ///< mean evaluation time in the latest batch shared by ranks [s]; 0: none
+    bool imbalanced = true;         ///< true: the next batch is distributed dynamically
+    std::size_t local_batches = 0;  ///< batches since the latest shared one, which every rank evaluated itself
   };
   using Rows = std::pair<std::size_t, std::size_t>;  // first row, end row (excluded)
 
+  /// Evaluates rows on this rank, with one or several threads.
   /// @param design_seconds  expected time per design on one thread [s]; 0: unknown
   void evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double design_seconds);
   void evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first, BatchTimings& timings);

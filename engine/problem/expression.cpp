@@ -71,7 +71,7 @@ std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const W
   for (std::size_t i = 0; i < info.parameters.size(); ++i) {
     const Parameter& parameter = info.parameters[i];
     if (find_named(info.limits, parameter.name))
-      // As a name in expressions, the limit's name denotes the threshold in effect, so that the parameter is skipped.
+      // Skip a parameter that has the name of a limit: in expressions, this name denotes the threshold in effect.
       continue;
     if (!expression::may_be_name(parameter.name))
       // Skip the parameters of single limbs, such as "arm2.l_b", because formulas cannot contain their names.

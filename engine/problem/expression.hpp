@@ -30,7 +30,7 @@ struct AnalysisResult {
   std::string meaning;
   const PoseQuantity* quantity = nullptr;  ///< quantity of which the result is a statistic; null: the result is the
                                            ///< volume
-  std::string statistic = {};              ///< name of the statistic, see NamedStatistic
+  std::string statistic = {};              ///< name of the statistic, for example "mean"
 
   /// The value of this result. With derivatives (Dual4), a worst case is replaced by a smooth approximation.
   /// @param sharpness  sharpness of the smooth approximation
@@ -54,7 +54,7 @@ class Expression {
   explicit Expression(const EntryContext& context);
 
   bool needs_workspace() const;
-  /// Adds the fields that the workspace analysis has to compute.
+  /// Adds to `request` the fields of the workspace analysis that the expression uses.
   void add_request(const EntryContext& context, FieldRequest& request) const;
   /// The value of the expression. With derivatives (Dual4), worst cases are replaced by smooth approximations.
   /// design.workspace may be null if needs_workspace() is false.

@@ -11,7 +11,7 @@ namespace pkm {
 
 /// Failed evaluations whose reasons differ only in their numbers.
 struct FailureReason {
-  std::string example;  ///< reason of the first such evaluation
+  std::string example;  ///< reason of the first of the failed evaluations, with its numbers
   std::size_t count = 0;
 };
 

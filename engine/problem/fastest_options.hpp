@@ -9,7 +9,7 @@
 
 namespace pkm {
 
-/// The options `nodes`, `tool_speed` and `tool_acceleration`.
+/// The options `nodes`, `tool_speed` and `tool_acceleration` of objectives that are evaluated along the fastest motion.
 std::vector<OptionSpec> fastest_options();
 
 /// The fastest motion along the path of the motion named in the options, for any design.
@@ -24,7 +24,7 @@ class FastestOfDesign {
   DesignWithLimits with_limits(const Mechanism& mechanism, std::span<const double> parameters) const {
     return {mechanism, parameters, mode_, limits_, wrench_};
   }
-  /// Moves of the motion for the parameters that the study itself defines.
+  /// The moves of which the motion consists, for the parameters that the study itself defines.
   const MovesOfMotion& moves() const { return *moves_; }
   /// Calls work(moves, times, design) with the shortest times of a design, and returns its result. Throws DesignError
   /// if the design cannot perform the motion at any speed.

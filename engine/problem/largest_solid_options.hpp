@@ -13,12 +13,14 @@ std::vector<OptionSpec> largest_solid_options(SolidKind kind);
 /// @param options  values of largest_solid_options()
 bool measures_size(const Options& options);
 
-/// Requirements on a solid in a workspace of this plan. Throws std::invalid_argument with one sentence if the options
-/// do not fit the plan.
+/// Requirements on the largest solid of a kind in the workspaces that a plan defines. Throws std::invalid_argument with
+/// one sentence if the options do not fit the plan.
 /// @param options  values of largest_solid_options()
 SolidSpec solid_spec(SolidKind kind, const MechanismInfo& info, const WorkspacePlan& plan, const Options& options);
 
-/// The finder for the options and the plan of an entry. Throws like solid_spec() and LargestSolidFinder.
+/// The object that finds the largest solid, for the options and the plan of a catalogue entry. Throws
+/// std::invalid_argument with one sentence if the options do not fit the plan, or the solid cannot be found in its
+/// workspaces.
 LargestSolidFinder solid_finder(SolidKind kind, const EntryContext& context);
 
 /// The objectives, constraints and outputs that measure a largest solid.

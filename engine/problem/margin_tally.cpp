@@ -38,7 +38,7 @@ std::size_t MarginTally::index_of(const std::string& name) {
 
 void MarginTally::add(const std::vector<std::pair<std::string, double>>& margins) {
   ++samples_;
-  // Indices of those margins of this sample that are not NaN, and whether the sample satisfies each of them.
+  // For each margin of this sample that is not NaN: its index in `counts_`, and whether the sample satisfies it.
   std::vector<std::pair<std::size_t, bool>> known;
   for (const auto& [name, margin] : margins) {
     if (std::isnan(margin)) continue;

@@ -66,7 +66,7 @@ const std::vector<S>& reduced_field(const WorkspaceResult<S>& workspace, const P
 struct PoseStatistic {
   const PoseQuantity& quantity;
   std::string statistic;        ///< "mean", "std", "min", "max" or a quantile such as "p95" (without derivatives)
-  std::string joint = "worst";  ///< how values of the joints are combined, see reduced_field()
+  std::string joint = "worst";  ///< number of a joint, or how the joints are combined: "worst", "mean"
   double sharpness = 200;       ///< sharpness of the smooth approximation of "min" and "max" with derivatives
 
   template <class S>

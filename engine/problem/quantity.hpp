@@ -119,7 +119,7 @@ struct ObjectiveEntry {
   std::function<std::string(const EntryContext&)> unit = unit_one;
   std::function<Unsupported(const Mechanism&)> refusal =
       supports_every_mechanism;  ///< reason why a mechanism does not support the objective; empty if it does
-  /// Adds the fields that the workspace analysis has to compute.
+  /// Adds to a FieldRequest the fields of the workspace analysis that the objective uses.
   std::function<void(const EntryContext&, FieldRequest&)> request = no_request;
   std::function<std::unique_ptr<const Quantity>(const EntryContext&)> make = nullptr;
   /// Description of the objective with given options; nullptr: `meaning`.
@@ -143,7 +143,8 @@ struct ConstraintEntry {
   std::function<std::string(const EntryContext&)> unit = nullptr;  ///< unit of the margin; nullptr for pose-level
                                                                    ///< constraints
   std::function<Unsupported(const Mechanism&)> refusal = supports_every_mechanism;
-  /// Pose-level only: the thresholds that the constraint sets. The reader merges them; setting one twice is an error.
+  /// Pose-level only: the thresholds that the constraint sets. The reader of studies merges the thresholds of all
+  /// constraints; setting one twice is an error.
   LimitSpec (*limits)(const MechanismInfo&, const Options&) = nullptr;
   /// Creates the constraint; nullptr for pose-level constraints. Throws std::invalid_argument with a sentence if an
   /// option has an unknown name.

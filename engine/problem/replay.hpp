@@ -24,8 +24,8 @@ class ReplayEvaluator final : public Evaluator {
   /// @param record  the stored table of the stage; must outlive this object
   ReplayEvaluator(Evaluator& inner, const EvaluationTable& record) : inner_(inner), record_(record) {}
 
-  /// Copies row r of the record, including its time, to row r of `table`. Throws ReplayMismatch if the shapes differ or
-  /// a design differs in any bit (the message gives the row).
+  /// Copies each recorded row r, including its time, to row r of `table`, and evaluates the rows that are not recorded.
+  /// Throws ReplayMismatch if the shapes differ or a design differs in any bit (the message gives the row).
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
 
  private:

@@ -1,4 +1,4 @@
-// Parameters of single limbs that have the value of the common parameter (ProblemParts::copies).
+// Parameters of single limbs that have the value of the parameter that all limbs share (ProblemParts::copies).
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace pkm {
 
-/// Sets the parameters of single limbs that are tied to a common parameter to its value.
+/// Sets each parameter of a single limb that is tied to a parameter of all limbs to the value of that parameter.
 inline void apply_ties(const ProblemParts& parts, std::vector<double>& parameters) {
   for (const auto& [own, common] : parts.copies) parameters[own] = parameters[common];
 }

@@ -22,7 +22,7 @@ class DrawnMotors {
   void append(const Pose<double>& pose, std::vector<PlacedLink>& links) const;
 
  private:
-  std::function<std::vector<PlacedDrive>(const Pose<double>&)> drives_;  ///< empty: unknown
+  std::function<std::vector<PlacedDrive>(const Pose<double>&)> drives_;  ///< drives of a pose; empty if unknown
   std::vector<AxisInfo> joints_;
   std::vector<std::optional<std::array<double, 2>>> ranges_;
 };

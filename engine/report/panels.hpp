@@ -24,8 +24,8 @@ Json convergence_data(const StudyContents& contents);
 Json populations_data(const StudyContents& contents);
 /// All designs of the stages that are parameter sweeps.
 Json sweeps_data(const StudyContents& contents);
-/// The Pareto fronts with knees and compromise solutions, and the data of the panels below for some designs of the last
-/// front.
+/// The Pareto fronts with knees and compromise solutions, and the data of the panels "Workspace", "Mechanism" and
+/// "Motions" for some designs of the last front.
 Json front_data(const PageStudy& page);
 
 /// The parameters of a single design, for a page without a study.

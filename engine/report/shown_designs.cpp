@@ -36,7 +36,8 @@ std::array<double, 2> feasible_range(const WorkspaceAxis& fixed, const ShownDesi
   std::vector<Pose<double>> poses;
   for (const std::size_t i : Thinning(cells.size(), kPoses).indices) poses.push_back(workspace.pose(cells[i]));
 
-  // Maximum displacement: half a turn for an angle, twice the largest extent of the workspace for a length.
+  // Maximum difference from the value of the fixed coordinate: pi for an angle, twice the largest extent of the
+  // workspace for a length.
   double reach = std::numbers::pi;
   if (fixed.unit == "m") {
     reach = 0;
@@ -124,7 +125,8 @@ void add_design(ShownDesigns& shown, const std::string& name, const std::vector<
   shown.designs.push_back(std::move(design));
 }
 
-/// Adds a design of a study. A page shows one mechanism: designs with other rows of catalogues have none.
+/// Adds a design of a study. A page shows one mechanism: a design with other rows of the catalogues has another
+/// mechanism, and is added without a workspace.
 void add_design_of_study(ShownDesigns& shown, const DesignProblem& problem, const std::string& name,
                          const std::vector<double>& parameters) {
   if (problem.of(parameters).parts().mechanism.get() == &shown.mechanism) return add_design(shown, name, parameters);

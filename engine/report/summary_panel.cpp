@@ -8,7 +8,8 @@
 namespace pkm {
 namespace {
 
-/// The table of designs: one column per design, then one per reference; null if nothing has been evaluated.
+/// The table of designs: one column per design of the study, then one per published reference design; null if nothing
+/// has been evaluated.
 Json table(const PageStudy& page) {
   const std::vector<Reference> references = page.study ? page.study->references : std::vector<Reference>();
   const DesignTable designs = design_table(page.contents, references);

@@ -40,8 +40,8 @@ Json surface_json(const ShownDesigns* shown, const ShownDesign* design, const Wo
   return {{"vertices", vertices}, {"triangles", packed_integers(indices)}};
 }
 
-/// JSON of a solid: its centre, its extents by axis, the axes of each ball (see SolidShape), and the text that
-/// describes it.
+/// JSON of a solid, which is a product of balls (a cylinder: of a disc and an interval): its name, shape, volume and
+/// centre, its extents by axis, and the axes and the dimension of each ball.
 Json solid_json(const ShownSolid& shown) {
   Json json = {{"name", shown.name}, {"shape", shown.shape.name()}, {"volume", shown.volume}};
   for (std::size_t axis = 0; axis < shown.shape.axes(); ++axis) {

@@ -164,9 +164,9 @@ TaskMotion compute_motion(const TaskComparison& comparison, const Task& task, co
   return result;
 }
 
-/// Appends the lines of the comparison for a region. All of them are in `evaluation`, except the scale, which is
-/// computed here.
-/// @param region  null if the robot refuses it
+/// Appends the lines of the comparison for a region to the values of a robot: those in `evaluation` and, computed here,
+/// the largest scale of the region.
+/// @param region  null if the robot refuses the region
 void append_region(const TaskEvaluation& evaluation, const std::string& name, const Region* region,
                    ComparedRobot& robot) {
   for (TaskValue line : evaluation.values) {

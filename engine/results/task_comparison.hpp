@@ -15,7 +15,7 @@ namespace pkm {
 /// A value over the time of a motion, at equidistant times including both ends.
 struct TaskCurve {
   std::string name, unit;      ///< name and unit of the value, such as "power of all drives", "W"
-  std::vector<double> values;  ///< values at these times; NaN: undefined
+  std::vector<double> values;  ///< values at equidistant times; NaN: undefined
 };
 
 /// A robot along a motion of the task. If it refuses the motion, there are neither curves nor a path.

@@ -151,7 +151,7 @@ std::string limiting_margin(const ComparedRobot& robot, const std::vector<Pose<d
   return name;
 }
 
-// The factor is increased in steps, and bisected where a pose becomes infeasible.
+// The scale factor of the box is increased in steps until a pose becomes infeasible, and then bisected.
 TaskValue largest_scale(const Region& region, const ComparedRobot& robot, const std::vector<Pose<double>>& poses) {
   constexpr double kFirst = 0.05, kStep = 1.1, kLargest = 50;
   TaskValue line{.group = region.name, .name = region.name + ": scale", .unit = "1"};

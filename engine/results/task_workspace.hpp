@@ -20,7 +20,7 @@ std::optional<WorkspaceFields> workspace_over(const std::vector<AxisInfo>& axes,
                                               const ComparedRobot& robot, std::int64_t cells);
 
 /// Values of a robot's workspace (its size), as lines of the comparison.
-/// @param counts  the numbers of axes over which workspaces of the compared robots extend: each has its own measure
+/// @param counts  numbers of axes of the robots' workspaces; each gives one line: length (1), area (2) or volume (3)
 std::vector<TaskValue> workspace_values(const std::vector<AxisInfo>& axes,
                                         const std::set<std::size_t, std::greater<>>& counts,
                                         const ComparedRobot& robot);

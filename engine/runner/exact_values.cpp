@@ -17,7 +17,7 @@ ExactValues::ExactValues(const ProblemParts& parts) : parts_(parts) {
   if (parts.mechanism->columns()->supports_box()) columns.box = parts.plan.box();
   ProblemParts exact = parts;
   exact.plan.method = columns;
-  // The problems with other rows of the catalogues would use the method of the study instead of the exact method.
+  // A problem with other rows chosen from the catalogues would use the method of the study instead of the exact method.
   exact.with_rows = nullptr;
   try {
     if (parts.built) {

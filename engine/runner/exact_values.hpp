@@ -22,7 +22,8 @@ class ExactValues {
 
   /// Evaluates one design. std::nullopt if there are no exact values.
   /// @param name   name of the design in notes
-  /// @param notes  receives the reason if there are no exact values, but only if the mechanism supports the method
+  /// @param notes  receives the reason if there are no exact values, but only if the mechanism supports the exact
+  /// method
   std::optional<DesignRecord> evaluate(const char* name, std::span<const double> parameters,
                                        std::vector<std::string>& notes) const;
 

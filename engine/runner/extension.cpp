@@ -5,7 +5,8 @@
 namespace pkm {
 namespace {
 
-/// Throws ConfigError if the stage has no such limit or the value exceeds its maximum.
+/// Throws ConfigError if the stage has no limit with the name `limit`, or if the value exceeds the maximum of this
+/// limit.
 void check_limit(const Stage& stage, const std::string& limit, double value) {
   const auto option = std::ranges::find(stage.entry->options, limit, &OptionSpec::name);
   const SourceLocation place{"", 0, "--" + limit};
@@ -18,7 +19,7 @@ void check_limit(const Stage& stage, const std::string& limit, double value) {
 /// Number of evaluations made, as the stage's evaluation limit counts them: all evaluations of the stage or, in a
 /// solver stage, where the limit applies to each multistart run, those of the longest run.
 double evaluations_done(const StageRecord& stage) {
-  // The rows after those of the finished runs belong to the unfinished run.
+  // The rows of the table after those of all finished multistart runs belong to the unfinished run.
   auto count = static_cast<std::int64_t>(stage.table.size());
   if (!stage.starts.empty()) count -= stage.starts.back().first_row + stage.starts.back().rows;
   for (const StartOutcome& start : stage.starts) count = std::max(count, start.rows);

@@ -16,8 +16,8 @@ struct ExtensionRequest {
 };
 
 /// Adds the requested limits to the extensions of the study file. If only `evaluations` is given, the limit on
-/// generations is raised to its maximum. Throws ConfigError if the stage has no such limit, or if a value is below the
-/// number already completed or above the maximum.
+/// generations is raised to its maximum. Throws ConfigError if the last stage lacks a requested limit, or if a value is
+/// below the number already completed or above the maximum.
 void request_extension(const Study& study, StudyContents& contents, const ExtensionRequest& request);
 
 /// Applies the extensions of a study file to the stages of the study.

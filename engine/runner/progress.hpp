@@ -34,7 +34,8 @@ class Progress {
   virtual ~Progress() = default;
   /// Called after each generation.
   virtual void generation(const ProgressReport&) {}
-  /// Called after the last generation, if a final step has taken a second. May be called on any thread.
+  /// Called after the last generation, if one step of the computation of final results has taken a second. May be
+  /// called on any thread.
   virtual void step(const std::string& /*description*/) {}
   /// Called before other output is printed: removes the current line.
   virtual void finish() {}

@@ -27,7 +27,7 @@ std::string folder_of(const std::string& file);
 /// functions are not connected to files yet.
 std::vector<FunctionRecord> function_records(const Study& study);
 
-/// Throws StorageError if a connected function differs from the recorded one.
+/// Throws StorageError if the file that defines one of the study's functions has another hash than the recorded one.
 void expect_recorded_functions(const Study& study, const std::vector<FunctionRecord>& recorded);
 
 }  // namespace pkm

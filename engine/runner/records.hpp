@@ -24,7 +24,8 @@ ProblemRecord problem_record(const Study& study);
 /// @param changes  changes to be applied to the study
 Study study_of(const StudyContents& contents, const Catalogues& catalogues, const StudyChanges& changes = {});
 
-/// Rebuilds the study of a study file in order to resume it. Throws StorageError also if recorded values differ.
+/// Rebuilds the study of a study file in order to resume it. Throws StorageError also if recorded values differ from
+/// those that the study's text gives.
 /// @param path  path of the file, for messages
 Study study_to_continue(const StudyContents& contents, const std::string& path, const Catalogues& catalogues);
 

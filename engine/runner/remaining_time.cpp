@@ -40,7 +40,7 @@ double evaluation_seconds(const Study& study, Detail detail) {
   try {
     for (std::size_t row = 0; row < table.size(); ++row) {
       double seconds = 1e30;
-      // The minimum of three measurements is used; the first one also warms up.
+      // The minimum of at most three measured times of the evaluation is used; the first evaluation also warms up.
       for (int i = 0; i < 3 && (i == 0 || seconds < 1); ++i) {
         const auto begin = Clock::now();
         evaluate_design(problem, table.design(row), scratch, table.slot(row));
@@ -122,9 +122,9 @@ RemainingTime::RemainingTime(const Study& study, const RunCost& cost, int thread
 
 std::optional<double> RemainingTime::update(std::size_t stage, std::int64_t left, std::int64_t made, double seconds) {
   constexpr double kStartUp = 1;  // time [s] before which the rate of evaluations is not representative
-  // Minimum time [s] over which the rate is averaged; only recent evaluations count, because their cost changes.
+  // Minimum time [s] over which the rate is averaged: only recent evaluations count, because their cost changes.
   constexpr double kMinWindow = 2;
-  // Factor of the upper bound of a solver stage, whose evaluations may become slower.
+  // Factor from the estimated time of a solver stage to its upper bound: evaluations may become slower.
   constexpr double kSafetyFactor = 1.5;
   if (stage != stage_) {
     stage_ = stage;

@@ -53,9 +53,9 @@ class RemainingTime {
                                  ///< reached
   double final_steps_;           ///< maximum time of the final steps [s]
   std::size_t stage_ = 0;        ///< index of the current stage
-  Sample begin_ = {0, 0};        ///< state at the beginning of the current stage
-  std::deque<Sample> samples_;   ///< recent states of the current stage
-  Sample last_ = {0, 0};         ///< state at the last update
+  Sample begin_ = {0, 0};        ///< time and evaluations at the beginning of the current stage
+  std::deque<Sample> samples_;   ///< times and evaluations at recent updates in the current stage
+  Sample last_ = {0, 0};         ///< time and evaluations at the last update
   /// Upper bound of the remaining time found so far [s], in a solver stage; otherwise std::nullopt.
   std::optional<double> bound_;
 };

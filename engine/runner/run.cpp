@@ -192,7 +192,8 @@ void Run::update_best(const EvaluationTable& table, std::int64_t row) {
   if (row < 0 || objectives.empty()) return;
   const auto stage = static_cast<std::int64_t>(stage_);
   if (contents_.best.row >= 0 && contents_.best.stage != stage) {
-    // In a tie the earlier stage wins, so that a stage without improvement does not change the best design.
+    // With one objective, a design that ranks equal to the best design of an earlier stage does not replace it, so that
+    // a stage without improvement does not change the best design.
     const RankKey before =
         ranked(objectives, contents_.best_stage().table, static_cast<std::size_t>(contents_.best.row));
     const RankKey candidate = ranked(objectives, table, static_cast<std::size_t>(row));

@@ -89,7 +89,7 @@ class Run final : public Monitor {
   std::size_t stage_ = 0;   ///< index of the current stage
   std::int64_t limit_ = 0;  ///< maximum number of evaluations of the current stage
   std::int64_t made_ = 0;   ///< number of new evaluations in this run up to the last generation
-  /// In a solver stage, returns the runs that are not yet merged; otherwise empty.
+  /// Function that returns a solver stage's multistart runs that are not yet merged; empty in other stages.
   std::function<std::vector<UnmergedRun>()> ahead_;
   bool replaying_;  ///< true as long as all results are already recorded in the study file
   /// Number of rows that belong to complete generations of the stage; std::nullopt while a generation is being
@@ -97,7 +97,7 @@ class Run final : public Monitor {
   std::optional<std::size_t> complete_rows_;
   std::string stopped_;         ///< reason for stopping the run; "": the run continues
   std::exception_ptr failure_;  ///< on rank 0, the exception that ends the run on all ranks
-  bool failed_ = false;         ///< on every rank, true if rank 0 has such an exception
+  bool failed_ = false;         ///< on every rank, true if an exception on rank 0 ends the run
   /// Time of the first stop request, counted from the start of this run [s].
   std::atomic<double> stop_requested_at_ = std::numeric_limits<double>::infinity();
   std::optional<RemainingTime> remaining_;  ///< estimate of the remaining time; set on rank 0 only

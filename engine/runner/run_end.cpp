@@ -49,7 +49,7 @@ RunOutcome Run::complete() {
   return outcome;
 }
 
-// Writes the file before the optional final steps, because these may take long.
+// Writes the study file before the optional final steps (such as certified bounds), because these may take long.
 void Run::compute_final_results() {
   const StopScope stop([this] { return is_grace_period_over(); });
   try {

@@ -112,7 +112,7 @@ PreviousFront previous_front(const Study& study, const StudyContents& contents) 
   }
   const Ranges extent = ranges_of(scores);
   for (std::size_t k = 0; k < extent.minimum.size(); ++k) {
-    // An objective without a range is scaled by its magnitude.
+    // An objective that is constant over the front is scaled by its magnitude.
     const double size = extent.range(k) > 0 ? extent.range(k) : std::fabs(extent.minimum[k]);
     if (std::isfinite(size) && size > 0) known.extents[k] = size;
   }

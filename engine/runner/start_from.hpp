@@ -15,7 +15,8 @@ struct StartFrom {
   /// Number of designs that lie outside the study's bounds, or between the steps of a variable; they are moved to the
   /// nearest allowed design.
   std::size_t moved = 0;
-  /// Names of the variables that are not parameters of the other study; see start_from().
+  /// Names of the variables that are not parameters of the other study. They get the value of the baseline or, without
+  /// a baseline, the centre of their range.
   std::vector<std::string> missing;
 };
 

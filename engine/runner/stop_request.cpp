@@ -12,7 +12,7 @@ constexpr std::array kIgnoredSignals = {SIGXFSZ, SIGPIPE};
 
 volatile std::sig_atomic_t received = 0;     // number of the first signal received; 0: none
 volatile std::sig_atomic_t received_at = 0;  // time at which it was received, on the monotonic clock [s]
-// Handlers of all signals, which are restored at the end.
+// Handlers that the signals had before; they are restored when the outermost StopRequest is destroyed.
 std::array<struct sigaction, kStopSignals.size() + kIgnoredSignals.size()> previous;
 int depth = 0;  // number of nested StopRequest objects
 
@@ -46,7 +46,7 @@ StopRequest::StopRequest() {
   action.sa_handler = handle_signal;
   for (const int signal : kStopSignals) {
     sigaction(signal, nullptr, &previous[i]);
-    // SIG_IGN is kept: nohup and shells set it for jobs in the background.
+    // A signal that the process ignores stays ignored: nohup, and shells for jobs in the background, set SIG_IGN.
     if (previous[i++].sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
   action.sa_handler = SIG_IGN;

@@ -25,7 +25,8 @@ class CheckpointClock {
   /// @param now    clock to use; default: steady_seconds()
   explicit CheckpointClock(std::optional<double> every = {}, std::function<double()> now = {});
 
-  /// Performs the first write of the study. Its duration is the first estimate of c, but is not part of s.
+  /// Performs the first write of the study. Its duration is the first estimate of the duration of a checkpoint, but is
+  /// not part of the total duration of all checkpoints.
   void first(const std::function<void()>& write);
   /// @return true if it is time for the next checkpoint
   bool due() const;

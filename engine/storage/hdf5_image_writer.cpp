@@ -51,7 +51,7 @@ Handle make_space(const Extent& extent, const std::string& what) {
 /// Creation properties of a dataset: chunking and filters.
 Handle dataset_properties(const Extent& extent, std::size_t value_bytes, const std::string& what) {
   Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
-  // Without timestamps, so that equal contents give equal bytes.
+  // HDF5 must not store timestamps, so that equal contents give equal bytes.
   check(H5Pset_obj_track_times(properties.get(), false), what);
   if (extent.empty()) return properties;
   std::vector<hsize_t> chunk(extent.begin(), extent.end());

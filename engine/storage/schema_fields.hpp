@@ -30,7 +30,8 @@ auto to_stored(const T& value) {
     return value;
 }
 
-/// Inverse of to_stored(). Throws ImageError for an unknown name.
+/// Converts the stored form of a value (the name of an enumerator, or the value itself) to the value. Throws ImageError
+/// for an unknown name.
 template <class T, class Stored>
 void from_stored(T& value, const Stored& stored, const std::string& where) {
   if constexpr (std::is_enum_v<T>) {

@@ -32,8 +32,8 @@ std::string read_text(int fd) {
   return n > 0 ? std::string(text, static_cast<std::size_t>(n)) : "";
 }
 
-/// @return true if the file looks like one that pkmopt created: a regular file with a single name, small, and empty or
-/// beginning with the signature
+/// @return true if the file looks like one that pkmopt created: a small regular file with a single hard link that is
+/// empty or begins with the signature of lock files
 bool is_lock_file(int fd) {
   struct stat status {};
   if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink > 1) return false;
@@ -83,7 +83,8 @@ StudyLock::StudyLock(const std::string& study_path) : lock_path_(link_target(stu
       const std::string by = holder_of(fd);
       ::close(fd);
       if (error == EINTR) continue;
-      // Retried once, because holder() also locks the file, for some microseconds.
+      // A refused lock is tried once more, because another process that calls holder() locks the file for some
+      // microseconds.
       if (error == EWOULDBLOCK && std::exchange(retry, false)) {
         ::usleep(10000);
         continue;

@@ -134,7 +134,7 @@ class ComponentFinder::Search {
     }
   }
 
-  /// @return true if a pose on side b can be reached from a pose on side a next to it
+  /// @return true if a path may lead from a pose on side `a` of the singularities to an adjacent pose on side `b`
   bool are_compatible(std::int8_t a, std::int8_t b) const {
     if (a == PoseSides::kInfeasible || b == PoseSides::kInfeasible) return false;
     return finder_.crossing_ == Crossing::allowed || (a == b && a != PoseSides::kSingular);

@@ -69,8 +69,8 @@ class ComponentFinder {
   /// A polyline within one component from one pose to another, through centres of connected cells. It prefers cells far
   /// from the boundary of the component: the shortest path (Dijkstra's algorithm) with the cost 1 + 8 / d^2 of a cell
   /// at the distance d from the boundary, in cells. Every two neighbouring points are connected by a straight line
-  /// whose sampled poses are feasible and on one side of the singularities. Throws DesignError like holding(), also if
-  /// the two poses are in different components.
+  /// whose sampled poses are feasible and on one side of the singularities. Throws DesignError if a
+  /// pose is in no component, or if the two poses are in different components.
   struct Path {
     std::vector<Pose<double>> cells;    ///< all points of the polyline
     std::vector<Pose<double>> corners;  ///< points of a shortened polyline, without the points that a straight line

@@ -13,9 +13,9 @@
 
 namespace pkm {
 
-/// Prepares the analysis. A design whose home pose is infeasible, singular or outside of the grid throws DesignError,
-/// as does one whose component ends at a singularity, if the mechanism does not support Columns::on_side(). Throws
-/// std::invalid_argument if the plan is not supported, see ComponentFinder.
+/// Prepares the analysis of the component that holds the home pose. A design whose home pose is infeasible, singular or
+/// outside of the grid throws DesignError, as does one whose component ends at a singularity, if the mechanism does not
+/// support SidedColumns::on_side(). Throws std::invalid_argument if the plan is not supported.
 /// @param mechanism  must outlive the evaluator
 /// @param map        evaluator of the grid of the same design, without a home pose
 std::unique_ptr<const WorkspaceEvaluator> prepare_home_columns(const Mechanism& mechanism, const WorkspacePlan& plan,

@@ -9,7 +9,7 @@ namespace pkm {
 
 /// Prepares an evaluator that counts only the cells of the component that contains the home pose. A design whose home
 /// pose is infeasible, singular or outside of the grid throws DesignError. Throws std::invalid_argument if the plan is
-/// not supported, see ComponentFinder.
+/// not supported.
 /// @param map      evaluator of the same plan without a home pose, without samples
 /// @param samples  evaluator of the same plan with the samples of the request and with FieldRequest::every_pose; null
 ///                 if no samples are requested

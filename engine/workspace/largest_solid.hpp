@@ -31,7 +31,8 @@ struct LargestSolid {
   Solid solid;
   double volume = 0;  ///< volume of the solid; 0: no solid was found
   std::vector<Contact> contacts;
-  /// Norm of the last step and of the violation, relative to the size: accuracy of the dimensions.
+  /// Norm of the last step plus the largest violation of a constraint, relative to the size of the solid: accuracy of
+  /// the dimensions.
   double residual = 0;
   /// If det(G) = 0 is a constraint: factor by which det(G) is multiplied to obtain its margin; otherwise 0.
   double determinant = 0;

@@ -18,12 +18,13 @@ std::unique_ptr<const WorkspaceEvaluator> prepare_workspace(const Mechanism& mec
 /// conditioning.
 const PoseQuantity* first_cellwise_field(const FieldRequest& request);
 
-/// Creates the evaluator of a voxel plan, for maps of many designs. Throws like prepare_workspace().
+/// Creates the evaluator of a voxel plan, for maps of many designs. Throws std::invalid_argument with one sentence if
+/// the plan is not supported.
 /// @param mode  working mode; "": the first
 std::unique_ptr<const VoxelEvaluator> prepare_voxel_map(const Mechanism& mechanism, const WorkspacePlan& plan,
                                                         const std::string& mode = "");
 
-/// The voxel map of one design. Throws like prepare_workspace().
+/// The voxel map of one design. Throws std::invalid_argument with one sentence if the plan is not supported.
 VoxelMap voxel_map(const Mechanism& mechanism, std::span<const double> parameters, const WorkspacePlan& plan);
 
 }  // namespace pkm

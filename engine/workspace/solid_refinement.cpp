@@ -23,7 +23,7 @@ SolidRefinement::Iterate SolidRefinement::run(const SolidSamples& samples, const
     now.multipliers = multipliers;
     const double length = step.lpNorm<Eigen::Infinity>();
     residual_ = length + now.violation;
-    // Differences of the merit function that are smaller are rounding errors, multiplied by the penalty.
+    // Smaller differences of the merit function are due to rounding errors of violations, multiplied by the penalty.
     constexpr double kRounding = 1e-10;
     const bool is_final = predicted < kRounding;
     if (residual_ < kTolerance || iteration == kMaxIterations || final_steps == kMaxFinalSteps || radius < kTolerance) {

@@ -9,7 +9,8 @@
 
 namespace pkm {
 
-/// The sizes and free coordinates of the centre as variables, in units of a length.
+/// Variables of the optimisation: the sizes of the solid and the free coordinates of its centre, both divided by
+/// unit(), the largest dimension of the initial solid.
 class SolidVariables {
  public:
   SolidVariables(const SolidSpec& spec, const Solid& start) : spec_(spec) {
@@ -37,7 +38,7 @@ class SolidVariables {
       made.dimensions[ball] = x[variable_of(ball)] * ratio(ball) * unit_;
     return made;
   }
-  /// Derivatives of CriticalPoint::distance, in units of unit().
+  /// Derivatives of CriticalPoint::distance / unit() with respect to the variables.
   Eigen::VectorXd gradient(const CriticalPoint& point) const {
     Eigen::VectorXd g = Eigen::VectorXd::Zero(count());
     for (std::size_t i = 0; i < free_.size(); ++i) g[static_cast<Eigen::Index>(i)] = point.normal[free_[i]];
@@ -47,7 +48,7 @@ class SolidVariables {
     }
     return g;
   }
-  /// log(volume), its gradient and its Hessian, which is diagonal.
+  /// log(volume) up to a constant, its gradient, and the diagonal of its Hessian, which is a diagonal matrix.
   double log_volume(const Eigen::VectorXd& x, Eigen::VectorXd& gradient, Eigen::VectorXd& hessian) const {
     double sum = 0;
     gradient = hessian = Eigen::VectorXd::Zero(count());

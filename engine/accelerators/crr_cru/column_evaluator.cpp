@@ -101,7 +101,7 @@ class ClosedFormColumns final : public WithGradients<ClosedFormColumns> {
   SlicedDesign<S> sliced(std::span<const S> parameters) const {
     return sliced_design(design(geometry(settings_.platform, parameters), settings_.limits, box_), settings_.fixed);
   }
-  /// The design that these parameters describe, in another scalar type with zero derivatives.
+  /// Converts the parameters of a design to another scalar type, with zero derivatives. @return the design
   template <class To, class From>
   SlicedDesign<To> sliced_constant(std::span<const From> parameters) const {
     return sliced(std::span<const To>(constants<To, kParameters>(parameters)));

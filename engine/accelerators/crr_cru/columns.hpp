@@ -22,8 +22,8 @@ struct ColumnScratch {
 };
 
 /// Adds derivatives to a critical value of the outer coordinate that was found by bisection. There, two critical points
-/// of the slice coincide (README.md), and the implicit function theorem applied to this equation gives the derivatives.
-/// They are 0 if neither a column nor a gap between columns vanishes at the value.
+/// of the slice coincide (README.md); the implicit function theorem, applied to the equality of their u, gives the
+/// derivatives. These are 0 if neither a column nor a gap between columns vanishes at the value.
 /// @param plain     the design in double precision
 /// @param by_outer  the design with zero derivatives, for derivatives with respect to the outer coordinate
 /// @param at        the critical value
@@ -66,7 +66,8 @@ S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plai
 
 /// Fills scratch.intervals with the subintervals of the outer coordinate on which slices are not empty and have one
 /// combinatorial type. Decisions depend on values only, never on derivatives.
-/// @param plain, by_outer  see lift_critical_value()
+/// @param plain     the design in double precision
+/// @param by_outer  the design with zero derivatives, for derivatives with respect to the outer coordinate
 template <class S>
 void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
                           const SlicedDesign<Dual<1>>& by_outer, ColumnScratch<S>& scratch) {

@@ -1,6 +1,7 @@
 // (3CRR/R)&CRU and Quadrupteron: inertia of the limbs at the platform joints C_i, and of the platforms (README.md).
 //
-// Source: as model.hpp, parts 2.2 to 3.1 with their errata; the limb-wise form follows from virtual work.
+// Source: the paper cited in model.hpp, sections 2.2 to 3.1 with their errata. The form by limbs follows from the
+// principle of virtual work.
 #pragma once
 
 #include "engine/accelerators/crr_cru/joint_inertia.hpp"

@@ -51,7 +51,7 @@ class ClosedFormVoxels final : public GridEvaluator<ClosedFormVoxels> {
                 WorkspaceResult<double>& workspace) const override {
     GridEvaluator::evaluate(parameters, scratch, workspace);
     if (!settings_.with_conditioning || !workspace.weight.empty()) return;
-    // If phi is fixed, one sample represents all cells.
+    // If phi is fixed, the conditioning is the same in all cells, and one sample represents them all.
     const Geometry<double> g = geometry(settings_.platform, parameters);
     settings_.add_conditioning(g, fixed_value(g, settings_.fixed), workspace.volume, workspace);
   }

@@ -24,7 +24,7 @@ Box default_box(const Design<double>& d, const FixedCoordinate& fixed) {
   const auto arm = arms(g, s, c);
   std::array<std::array<double, 2>, 4> range;
   for (std::size_t k = 0; k < 3; ++k) {
-    // If phi is not fixed, the rotation displaces the platform joint by -r to r along its rail.
+    // If phi is not fixed, rotation moves the platform joint along its rail by up to the radius r in both directions.
     const bool rotates = fixed.coordinate != 3 && arm[k].rotates && k < 2;
     const double shift = rotates ? 0 : arm[k].to_joint[k], reach = rotates ? g.r : 0;
     range[k] = {g.rho_min - shift - reach, g.rho_max - shift + reach};

@@ -10,7 +10,7 @@
 namespace pkm::four_ppa_two_par {
 namespace {
 
-constexpr int kY = 1;  ///< index of the coordinate y, which these analyses fix or integrate over
+constexpr int kY = 1;  ///< index of the coordinate y, which the workspace analyses fix or integrate over
 
 /// The y of the plane on which a plan fixes the platform [m]; by default, the middle of the range of y.
 template <class S>

@@ -12,9 +12,9 @@ namespace pkm::four_ppa_two_par {
 /// The columns along z at the first x values of a grid, for kLanes consecutive values of theta. A plain struct, so that
 /// kernels share no inline code with files that are compiled for another instruction set.
 struct ColumnsAtThetas {
-  double a, b, l_u, l_d, d, L0;        ///< lengths of the design, see Geometry
-  double sin_par_min, cos_theta_min;   ///< thresholds, see Limits
-  double x_min, x_max, z_low, z_high;  ///< ranges of lengths, see Ranges
+  double a, b, l_u, l_d, d, L0;        ///< lengths of the design, named as in README.md [m]
+  double sin_par_min, cos_theta_min;   ///< minimum of sin(beta_1 + beta_2) and of cos(theta)
+  double x_min, x_max, z_low, z_high;  ///< range of x_j; maximum and minimum of -z_cj for unlimited stroke
   double y;
   double x_lower, x_step, z_lower, z_step;  ///< lower bounds and steps of the grid
   double z_cells;

@@ -10,8 +10,9 @@ namespace {
 ///
 ///   max(0, L0 - max(2 h_1, 2 h_2, h_1 + h_2 + a sin theta)),   theta >= 0.
 ///
-/// The leaning limb (that with the greater inclination beta) has the smaller h. Both h increase with z, and so does
-/// their difference, which is negative or 0: the length has at most one kink and one root.
+/// where h_j is half the distance of the two sliders of limb j. The leaning limb (that with the greater inclination
+/// beta) has the smaller h. Both h increase with z, and so does their difference, which is negative or 0: the length
+/// has at most one kink and one root.
 double integral_of_stroke(const SlicedDesign<double>& d, const Slice<double>& t, const Column<double>& column,
                           const ClosedInterval& clear) {
   static const GaussRule rule = gauss_legendre(12);

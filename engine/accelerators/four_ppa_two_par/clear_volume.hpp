@@ -1,9 +1,9 @@
 // 4PPa-2PaR: volume of the workspace with a clearance test of poses.
 //
 // The test excludes parts of columns. Therefore the area of a slice has no closed form: it is integrated over delta,
-// and the clear parts of columns are found by root finding. Where a pair of links becomes active, the integrand has a
-// kink, whose position is unknown. Therefore both quadratures bisect their intervals until error estimates that allow
-// for kinks meet the tolerance, which is at least kFinestClearTolerance.
+// and the clear parts of columns are found by root finding. Where another pair of links begins to bound a clear part,
+// the integrand has a kink, whose position is unknown. Therefore both quadratures bisect their intervals until error
+// estimates that allow for kinks meet the tolerance, which is at least kFinestClearTolerance.
 #pragma once
 
 #include "engine/accelerators/four_ppa_two_par/clearance.hpp"

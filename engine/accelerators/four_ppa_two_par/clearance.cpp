@@ -59,7 +59,8 @@ double clearance_lower_bound(const Geometry<double>& g, const GroupPair& pair) {
 
 ClearanceTest::ClearanceTest(const Geometry<double>& g, double min_clearance) : g_(g), min_clearance_(min_clearance) {
   const double infinity = std::numeric_limits<double>::infinity();
-  // The segments of two sliders are 2 h - 2 (d_0 + d_u/2 - R_s) apart, or overlap; they are points if R_s is larger.
+  // The segments of two sliders are 2 h - 2 (d_0 + d_u/2 - R_s) apart, or overlap; they are points if
+  // R_s > d_0 + d_u/2.
   if (min_clearance > -2 * g.R_s) h_min_ = std::fmax(0.0, std::fmax(g.d_0 + g.d_u / 2, g.R_s) + min_clearance / 2);
   const double below = g.d_d - g.d;  // depth of the point E_j below the platform
   for (const GroupPair& pair : kPairs) {

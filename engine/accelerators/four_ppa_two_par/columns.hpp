@@ -21,8 +21,7 @@ struct ColumnScratch {
   std::vector<Subinterval<S>> deltas, heights;  ///< intervals of delta within a slice, and of z within a column
   ClearanceScratch clearance;
   ColumnConditioning<S> poses;
-  std::array<std::vector<S>, 2> inertia;  ///< values of the inertia's fields at a pose and at its mirror image in x =
-                                          ///< b/2
+  std::array<std::vector<S>, 2> inertia;  ///< inertia fields at a pose, and at its mirror image in x = b/2
 };
 
 /// Estimate of the rounding error of the area of a slice [m^2], which is a difference of terms of the size l_d (l_d +
@@ -72,7 +71,7 @@ S area_over_y(const SlicedDesign<S>& d, Slice<S> t, const GaussRule& rule) {
     const S rest = d.z_low - end, above = d.z_high + end;
     if (value_of(rest) > value_of(d.z_high)) {
       add_stroke(sqrt_or_zero(S((g.l_u - rest) * (g.l_u + rest))));  // value at which Delta_j equals the end of delta
-      // Value at which Delta_2 - Delta_1 equals the end of delta, while stroke 2 does not limit z.
+      // The y at which Delta_2 - Delta_1 equals the bound `end` of delta, if the stroke of limb 2 does not limit z.
       add(sqrt_or_zero(S((g.l_u - above) * (g.l_u + above))) + shift);
     }
     const auto offset = [&](const S& width) {  // H of the midpoint of a chord whose components are (width, end)
@@ -124,8 +123,8 @@ Integral<S> volume_over_y(const Geometry<S>& g, const Limits<S>& l, double toler
   return result;
 }
 
-/// Finds the intervals of delta in a half slice on which the length of columns is smooth. They lie below and above the
-/// knee, and exclude the parts in which a clearance limit is violated.
+/// Finds the intervals of delta in a half slice on which the length of columns is smooth. They lie below and above
+/// HalfSlice::knee, up to which the length is constant, and exclude the parts in which a clearance limit is violated.
 /// @param scratch  receives the intervals in `deltas`
 template <class S>
 void find_delta_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const HalfSlice<S>& h, std::size_t leaning,
@@ -197,7 +196,8 @@ struct SampleTarget {
 
 /// Adds one sample to the result.
 /// @param inertia   result of inertia_values() at the pose
-/// @param mirrored  see add_inertia()
+/// @param mirrored  true: adds the inertia of the mirror image of that pose, in which the sliders of each rail are
+/// exchanged
 template <class S>
 void add_sample(const SampleContents<S>& contents, const S& weight, const Pose<S>& pose, const S& conditioning,
                 const std::vector<S>& inertia, bool mirrored, const SampleTarget<S>& to) {

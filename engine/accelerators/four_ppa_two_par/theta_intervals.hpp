@@ -93,8 +93,8 @@ template <class S>
 void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<CriticalValue<S>>& values) {
   const Geometry<S>& g = d.g;
   const Limits<S>& l = d.l;
-  // Adds the theta of a value of w or of `shift`. root_below and root_above: true if the area has a square-root
-  // singularity below or above this theta.
+  // Adds the theta at which w, or shift = (a/2) sin theta, has a given value. root_below and root_above: true if the
+  // area has a square-root singularity below or above this theta.
   const auto at_w = [&](const S& w, bool root_below, bool root_above) {
     const S c = (g.b - w) / g.a;
     if (value_of(c) > 0 && value_of(c) < 1) values.push_back({acos(c), root_below, root_above});
@@ -104,7 +104,7 @@ void add_closed_form_critical_values(const SlicedDesign<S>& d, std::vector<Criti
     if (value_of(s) > 0 && value_of(s) < 1) values.push_back({asin(s), root_below, root_above});
   };
   const auto root = [](const S& x) { return sqrt_or_zero(x); };
-  // theta at which w is at a bound
+  // theta at which w = x_1 + x_2 equals its minimum or maximum, given by beta_min, beta_max and sin_par_min
   at_w(d.x_min * 2.0, false, false);
   at_w(d.x_max * 2.0, true, false);
   at_w(d.chord_max, true, false);

@@ -11,7 +11,7 @@
 namespace pkm::hybrid {
 namespace {
 
-constexpr int kY = 1;  ///< index of the coordinate y, which these analyses fix or integrate over
+constexpr int kY = 1;  ///< index of the coordinate y, which the workspace analyses fix or integrate over
 
 struct AnalysisSettings {
   WorkingMode signs;

@@ -36,7 +36,8 @@ const Decomposition& decomposition_of(const Slice<double>& s, double beta, Colum
 
 /// Fills scratch.intervals with the intervals of beta on which slices are not empty and have one type. Decisions depend
 /// on values only, never on derivatives.
-/// @param plain, by_beta  see find_beta_intervals()
+/// @param plain    the design in double precision
+/// @param by_beta  the design with zero derivatives, for derivatives with respect to beta
 template <class S>
 void find_outer_intervals(const SlicedDesign<S>& d, const SlicedDesign<double>& plain,
                           const SlicedDesign<Dual<1>>& by_beta, ColumnScratch<S>& scratch) {

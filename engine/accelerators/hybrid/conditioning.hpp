@@ -26,7 +26,7 @@ struct PoseList {
 /// files that are compiled for another instruction set.
 template <class S>
 struct ConditioningDesign {
-  S L1, L2, L3, d, e;           ///< lengths of the design, see Geometry [m]
+  S L1, L2, L3, d, e;           ///< lengths of the design, named as in README.md [m]
   std::array<double, 3> signs;  ///< signs of n1, n2, n3
   S length;                     ///< characteristic length [m]
 };

@@ -53,7 +53,7 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
     for (std::size_t i = 0; i < edge.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         if ((in_s[i] >= in_s[j]) == (in_t[i] >= in_t[j])) continue;
-        // The edges -x and x of one curve of the chain intersect only where the root vanishes.
+        // The edges -x and x of one curve of the auxiliary chain intersect only where the root of the curve vanishes.
         const bool opposite = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
         if (!opposite)
           return Degeneracy{.kind = Degeneracy::Kind::edges, .first = at, .left = edge[j], .right = edge[i]};

@@ -7,7 +7,7 @@
 namespace pkm::hybrid {
 namespace {
 
-/// The z at which two edges of the chain intersect that are on the same side.
+/// The z at which two edges intersect that are bounds due to the auxiliary chain, on the same side.
 double chain_intersection(const Slice<double>& s, const Edge& first, const Edge& second) {
   const std::size_t i = first.curve - std::size_t{kCurveQ}, j = second.curve - std::size_t{kCurveQ};
   return (s.m[j] - s.m[i]) / (s.m_z[i] - s.m_z[j]);
@@ -18,7 +18,7 @@ struct Gap {
   double value, derivative;
   double second;  ///< bound of the magnitude of the second derivative
   double step() const { return -value / derivative; }
-  /// Returns true if, after this step, Newton's method has converged to the rounding accuracy of the height z.
+  /// Returns true if Newton's method, after step() from the height z, has converged to the rounding accuracy of z.
   bool is_last(double z) const {
     constexpr double kRelative = 1e-17;
     return step() * step() * second <= kRelative * z * std::fabs(derivative);

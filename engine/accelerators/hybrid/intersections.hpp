@@ -16,7 +16,8 @@ inline bool are_bounds_of_chain(const Edge& first, const Edge& second) {
 }
 
 /// The z in [p, q] at which two edges intersect, if their order at p differs from that at q: in closed form, or by
-/// Newton's method safeguarded by bisection. Edges of the chain intersect at bit-identical heights on both sides.
+/// Newton's method safeguarded by bisection. Edges due to the auxiliary chain intersect at bit-identical heights on
+/// both sides.
 double intersection(const Slice<double>& s, const Edge& first, const Edge& second, double p, double q);
 
 /// The z, near a given z, at which two edges intersect; kNoIntersection if Newton's method does not converge there.

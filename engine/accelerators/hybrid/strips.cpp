@@ -37,7 +37,7 @@ double possible_intersection(const Slice<double>& s, const Edge& above, const Ed
                              const Node& q) {
   if (are_bounds_of_chain(above, below)) return kNoIntersection;
   const double high = s.sign(above), low = s.sign(below);
-  // If false: `above` is concave, and `below` is convex, respectively.
+  // If above_is_convex is false, `above` is concave. If below_is_concave is false, `below` is convex.
   const bool above_is_convex = high<0, below_is_concave = low> 0;
   const double width = q.z - p.z, gap_p = x_at(s, above, p) - x_at(s, below, p),
                gap_q = x_at(s, above, q) - x_at(s, below, q);
@@ -247,7 +247,7 @@ bool track(const Slice<double>& s, Decomposition& decomposition) {
   const double low = s.lower[lower], high = s.upper[upper];
   if (lower != decomposition.lower || upper != decomposition.upper || hole_of(s, low, high) != decomposition.hole)
     return false;
-  // The slice is empty, but strips can exist in slices beside it, because the critical values of the gap are unknown.
+  // There are no strips whose heights could be updated, although the nearby slice may have some.
   if (decomposition.strips.empty()) return false;
   StripBound from, to;  // bounds of the previous strip before they were updated
   const Strip* before = nullptr;

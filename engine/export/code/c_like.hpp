@@ -20,7 +20,7 @@ std::string body_of_c(const Module& module, const Function& function);
 std::string assembly_condition(const Module& module);
 /// The body of `forward`, which applies Newton's method.
 /// @param locals  declarations of the arrays found, J, change and next
-/// @param inverse_of_x, inverse_of_next, jacobian  calls of these functions
+/// @param inverse_of_x, inverse_of_next, jacobian  calls of the generated functions for inverse kinematics and Jacobian
 /// @param J, found  expressions that give pointers to these arrays
 std::string forward_body_of_c(const Module& module, const std::string& locals, const std::string& inverse_of_x,
                               const std::string& inverse_of_next, const std::string& jacobian, const std::string& J,

@@ -7,8 +7,8 @@ namespace pkm::generic {
 namespace {
 
 constexpr int kMaxExtrapolations = 18;  // after this many extrapolations, bisection only
-// Maximum number of features that differ, and of their keys. If there are more, the number of pairs is so large that
-// bisection is as fast.
+// Maximum number of keys that occur in different numbers in the slices below and above the critical value, and of
+// features with these keys in a slice. If there are more, there are so many pairs that bisection is as fast.
 constexpr std::size_t kMaxFeatures = 100;
 
 }  // namespace

@@ -317,8 +317,8 @@ void NestedIntegral::place_nodes(std::span<const double> inputs, std::span<const
 /// Divides the range of the only outer coordinate at its critical values, given to an accuracy below kBeside: they are
 /// bracketed between two slices beside them, because derivatives need more digits at roots of even order.
 void NestedIntegral::place_intervals(std::span<const double> values, IntegralScratch& scratch) const {
-  // Relative to the range of the coordinate: distance of these slices from a critical value, and distance within which
-  // critical values are bracketed together.
+  // Relative to the range of the coordinate: distance from a critical value of the two slices that bracket it, and
+  // distance within which critical values are bracketed together.
   constexpr double kBeside = 1e-6, kTogether = 4 * kBeside;
   IntegralScratch::Level& own = scratch.levels[0];
   const auto [from, to] = plan().range[0];

@@ -60,10 +60,11 @@ struct SmoothInterval {
   /// Error, at the endpoints of the interval, of the polynomial through the measures at the nodes; computed only if
   /// derivatives will be computed.
   double missed_at_ends = 0;
-  /// Number of consecutive bisections in which this half contained nearly all of the change of the measure.
+  /// Number of consecutive bisections, the last of which made this interval, in which one of the two halves contained
+  /// nearly all of the change of the measure.
   int one_sided_bisections = 0;
-  /// Index in IntegralScratch::kept of the intervals for the first node of this interval; those for its other nodes
-  /// follow.
+  /// Index in IntegralScratch::kept of the list of intervals of the other outer coordinate at the first node of this
+  /// interval; the lists at its other nodes follow.
   std::size_t kept = 0;
 };
 
@@ -117,7 +118,7 @@ struct IntegralScratch {
   bool measured = false;      ///< true: the measure has been computed, and later slices do not change it
   bool for_gradient = false;  ///< true: derivatives will be computed after this measure
   /// If derivatives will be computed and there are two outer coordinates: for nodes of the outermost coordinate, the
-  /// intervals of the other one.
+  /// intervals of the other outer coordinate.
   std::vector<std::vector<SmoothInterval>> kept;
   std::unique_ptr<IntegralScratch> other;  ///< scratch memory for slices on the opposite side of a critical value
   long evaluations = 0;
@@ -144,8 +145,8 @@ class NestedIntegral {
   Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch) const {
     return measure(inputs, scratch, Budget{});
   }
-  /// Like measure(), but locates critical values accurately enough for derivatives, and keeps the intermediate results
-  /// that add_gradient() needs.
+  /// Volume of the workspace with an estimate of its error. Locates critical values accurately enough for derivatives,
+  /// and keeps the intermediate results that add_gradient() needs.
   Integral<double> measure_for_gradient(std::span<const double> inputs, IntegralScratch& scratch) const;
   /// Adds the derivatives of the measure with respect to the graph's inputs to by_input; to be called after
   /// measure_for_gradient().

@@ -9,11 +9,11 @@ namespace pkm::generic {
 namespace {
 
 // Width to which the interval around a critical value is reduced, relative to the range of the coordinate. At a
-// square-root singularity, it causes a relative error of derivatives of the order of its square root (3e-8 for 1e-15),
-// and of volumes of the order of its power 3/2; so 1e-11 is sufficient for volumes if the slices are lines.
+// square-root singularity, a width w causes a relative error of derivatives of the order of w^(1/2) (3e-8 for 1e-15),
+// and of volumes of the order of w^(3/2); so 1e-11 is sufficient for volumes if the slices are lines.
 constexpr double kBracketWidth = 1e-15, kBracketWidthOfLines = 1e-11;
 // If two slices are farther apart than this, relative to the range of the coordinate, a small component can be the
-// reason why they differ. Inner coordinates are then sampled as densely as in the first scan.
+// reason why they differ. Inner coordinates are then sampled as densely as in the first scan of the range.
 constexpr double kSmallDistance = 1e-3;
 constexpr double kMergeDistanceOfValues = 1e-8;  // relative to the range: closer critical values are merged
 // A change of type within kStepFactor steps of the previous one is due to rounding errors: the next step is longer by

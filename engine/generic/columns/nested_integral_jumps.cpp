@@ -18,8 +18,8 @@ namespace {
 
 // Distance from the critical value, relative to the range of the coordinate, of the two slices that are compared.
 constexpr double kOffset = 1e-9;
-// Factor by which this distance is larger for a second pair of slices, which shows whether there is a square-root
-// singularity.
+// Factor by which the distance kOffset from the critical value is larger for a second pair of slices, which shows
+// whether there is a square-root singularity.
 constexpr double kSecondOffset = 10;
 // If the change of the measure, relative to the largest slice, is smaller, a discontinuity cannot be distinguished from
 // a continuous change.

@@ -41,8 +41,8 @@ Subinterval<Dual4> NestedIntegral::differentiable_piece(std::size_t level, const
 
 /// An endpoint of an interval with its derivatives with respect to the design. Critical values of outer levels, and
 /// those of slices that are lines, count as constant: the measure is continuous there, so that the derivative of the
-/// sum is that of the integral up to the error of the rule. At a discontinuity, the critical value moves with the
-/// constraint that is violated beyond it.
+/// sum over the nodes is that of the integral up to the error of the quadrature rule. At a discontinuity, the critical
+/// value moves with the constraint that is violated beyond it.
 Dual4 NestedIntegral::differentiable_end(std::size_t level, const SmoothInterval& part, bool upper,
                                          IntegralScratch& scratch) const {
   const expression::Program& program = plan().program;
@@ -54,7 +54,8 @@ Dual4 NestedIntegral::differentiable_end(std::size_t level, const SmoothInterval
     const double slope = slope_of_independent(level, closing, at, scratch);
     return differentiable_root(at, tangent(scratch.own, scratch.dual_registers), slope);
   }
-  // The derivatives are the mean over the points that become feasible or infeasible at the critical value.
+  // The derivatives of a critical value at a discontinuity are the mean over the points that become feasible or
+  // infeasible at the critical value.
   if (may_jump(level, part, upper, scratch)) {
     Components<4> motion;
     double all = 0;

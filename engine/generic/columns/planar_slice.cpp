@@ -45,8 +45,8 @@ void PlanarSlice::find_column(double t, const double* registers, PlanarSliceScra
     }
     if (plan_.formula.holds(signs, registers) != is_in) {
       is_in = !is_in;
-      // If several surfaces have their endpoint here, the first one whose sign changes in the required direction
-      // represents them.
+      // If the roots of several surfaces coincide at this endpoint of a column, the first surface whose sign changes in
+      // the required direction represents them.
       EndLabel label = ~EndLabel{0}, any = ~EndLabel{0};
       for (std::size_t j = i; j < end; ++j) {
         const EndLabel each = scratch.ends[j].second;
@@ -243,8 +243,8 @@ std::vector<std::array<double, 2>> PlanarSlice::columns(double v, std::span<doub
 }
 
 bool PlanarSlice::has_sqrt_singularity(std::size_t vertex, const PlanarSliceScratch& scratch) {
-  // A vertex within this distance in t of a turning point counts as one: near a tangency, intersections can lie on
-  // either side of it.
+  // A vertex within this distance in t of a turning point counts as a turning point: near a tangency, intersections can
+  // lie on either side of it.
   constexpr double kNearTurningPoint = 1e-7;
   return vertex < scratch.vertices.size() &&
          std::ranges::any_of(scratch.vertices, [&](const PlanarSliceScratch::Vertex& other) {

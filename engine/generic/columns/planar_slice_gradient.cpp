@@ -18,8 +18,8 @@ void PlanarSlice::add_gradient(double factor, std::span<double> registers, std::
     add_gradient_of_area(scratch.conics[k], {static_cast<int>(end & 1U), piece.from, piece.to}, sign * measure,
                          gradient[k]);
   };
-  // Adds the contribution of a vertical side of a piece: it has the length of its columns per unit of displacement in
-  // t.
+  // Adds the contribution of a vertical side of a piece to the gradient: per unit of displacement of the side in t, the
+  // area changes by the total length of the columns there.
   const auto add_side = [&](const PlanarSliceScratch::Piece& piece, bool upper) {
     const double t = upper ? piece.to : piece.from, sign = upper ? 1 : -1;
     const std::uint32_t label = vertex_of(kMaxSurfaces, upper ? piece.to_vertex : piece.from_vertex, t, scratch);

@@ -1,4 +1,5 @@
-// The constraints of a planar slice, transformed to the square that its workspace fills.
+// The constraints of a planar slice, transformed to coordinates (t, s) in which its feasible points lie in the square
+// [-1, 1]^2.
 #include <cmath>
 
 #include "engine/generic/columns/vertices.hpp"

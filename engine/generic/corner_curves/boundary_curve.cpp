@@ -33,6 +33,7 @@ bool BoundaryCurve::interpolate(double tolerance) {
   terms = 1;
   tail = error = 0;
   bool has_converged = true;
+  /// Computes the Chebyshev coefficients of a function from its values.
   /// @return maximum magnitude of the values
   const auto interpolate_function = [&](const Samples& of, Samples& coefficients) {
     double largest = 0;
@@ -90,8 +91,8 @@ bool BoundaryCurve::find_graphs(const std::array<double, 2>& half_widths) {
     const double smallest_q2 = bounds_of(q2)[0];
     const double t = half_widths[swapped ? 1 : 0];
     if (bounds_of(q0)[0] - t * std::fmax(-low, high) + t * t * std::fmin(0, smallest_q2) > 0) return true;
-    // It is also positive if q2 > 0 and its own discriminant is negative. This may be 0 at single values of tau, at
-    // which the conic consists of two lines.
+    // The polynomial q0 + q1 t + q2 t^2 is also positive if q2 > 0 and its own discriminant q1^2 - 4 q0 q2 is negative,
+    // or 0 at single values of tau, at which the conic consists of two lines.
     if (!(smallest_q2 > 0) || !(of_t[kNodes / 2] < 0)) continue;
     Samples coefficients;
     to_coefficients(of_t, coefficients);

@@ -28,7 +28,7 @@ struct CurveAt {
   bool is_circle;
   double u, w, c;
   bool is_conic = false;
-  bool swaps = false;  ///< conics only, see BoundaryCurve::swaps
+  bool swaps = false;  ///< conics only; true: near feasible points the conic consists of graphs x(y); false: y(x)
   double xx = 0, xy = 0, yy = 0;
 
   double h(const Vector& p) const {

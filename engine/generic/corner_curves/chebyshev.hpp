@@ -57,7 +57,7 @@ void restrict_to_halves(const Samples& coefficients, std::size_t terms, Samples&
 /// @param values  receives the kPoints values of the first series, then those of the second and of the third
 void evaluate_at_points(const std::array<Samples, 3>& series, std::size_t terms, const double* points, double* values);
 
-/// Computes the coefficients of the derivative of a Chebyshev series; they are terms - 1.
+/// Computes the coefficients of the derivative of a Chebyshev series; their number is terms - 1.
 void differentiate_series(const double* coefficients, std::size_t terms, double* derivative);
 
 }  // namespace pkm::generic::corner_curves

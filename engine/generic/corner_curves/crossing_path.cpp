@@ -143,7 +143,7 @@ struct AlongLine {
     c = conic.quadratic(direction);
   }
   double discriminant() const { return b * b - 4 * a * c; }
-  /// The point at l = numerator/denominator.
+  /// The point of the line at the distance l = numerator/denominator from its foot point.
   Homogeneous point(double numerator, double denominator) const {
     return normalised(
         {denominator * foot.x + numerator * direction.x, denominator * foot.y + numerator * direction.y, denominator});

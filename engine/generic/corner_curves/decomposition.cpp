@@ -38,7 +38,7 @@ struct NecessaryConstraints {
     for (const auto& bound : formula.bounds) (bound.outside ? outside : inside) |= bit(bound.curve);
   }
   bool has(std::size_t i) const { return ((inside | outside) & bit(i)) != 0; }
-  /// Whether a point violates one of these constraints.
+  /// Whether a point violates one of the necessary constraints.
   /// @param signs  set of the curves with h > 0 at the point
   /// @param known  set of the curves whose sign is known
   bool is_violated(Signs signs, Signs known) const {
@@ -200,7 +200,8 @@ class Builder {
     return true;
   }
 
-  /// Follows the crossings of a conic with another curve, and adds the events on them.
+  /// Follows the crossings of a conic with another curve, and adds the events on them, i.e. the values of tau at which
+  /// a third curve passes through a crossing.
   bool add_pair_with_conic(Pair& pair) {
     const std::size_t i = pair.first, j = pair.second;
     const bool is_first = is_conic(i);
@@ -270,7 +271,8 @@ class Builder {
     return true;
   }
 
-  /// Adds the events on a path.
+  /// Adds the events on a path of a crossing, i.e. the values of tau at which a third curve passes through the
+  /// crossing.
   /// @param is_feasible  set to false if a necessary constraint is violated on the whole path
   /// @return false if the events are not resolved
   bool add_path_events(Pair& pair, const CrossingPath& path, std::int8_t number, bool& is_feasible) {
@@ -557,8 +559,8 @@ class Builder {
     return unknown;
   }
 
-  /// Adds the active ranges of the crossings of two circles or lines between two consecutive roots of their
-  /// discriminant.
+  /// Adds the active ranges, in which a crossing is a vertex of the slice, of the crossings of two circles or lines
+  /// between two consecutive roots of their discriminant.
   /// @param between  the two roots; between them the curves cross for all tau or for none
   void add_ranges_between(const Pair& pair, Subinterval<double> between) {
     const std::size_t i = pair.first, j = pair.second;
@@ -578,7 +580,7 @@ class Builder {
                     : out_.paths[static_cast<std::size_t>(path)].at(tau, first, second);
   }
 
-  /// Adds the active ranges of one crossing.
+  /// Adds the active ranges of one crossing: those ranges of tau in which it is a vertex of the slice.
   /// @param branch   branch of the crossing, or number of the path of a pair with a conic
   /// @param path     index of this path; -1: the pair has no conic
   void add_ranges_of(const Pair& pair, std::int8_t branch, int path, const Subinterval<double>& between) {
@@ -655,8 +657,8 @@ class Builder {
     finish(high, root_at_high);
   }
 
-  /// Whether the signs that were updated at all events agree with the signs at a crossing p at a given place; if not,
-  /// an event was missed.
+  /// Whether the curves' signs `signs`, updated at all events, agree with the signs of the curves' functions at a
+  /// crossing p at one value of tau (`place`); if not, an event was missed.
   /// @param which  set of the curves whose signs are compared
   bool are_signs(const Vector& p, const Place& place, Signs which, Signs signs) const {
     constexpr double kUncertain = 1e-9;

@@ -38,7 +38,8 @@ struct Decomposition {
   std::vector<ActiveRange> ranges;
   std::vector<CrossingPath> paths;  ///< crossings of conics with other curves
   double undecided = 0;             ///< total length in tau of intervals in which roots are undecided
-  /// Total length in tau on which decisions contradict each other; 0 unless one of them is wrong.
+  /// Total length in tau on which the decisions about which crossings are vertices contradict each other; 0 unless one
+  /// of these decisions is wrong.
   double unbalanced = 0;
   long functions = 0;  ///< number of discriminants and concurrence functions that were computed
 };

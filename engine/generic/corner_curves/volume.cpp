@@ -81,8 +81,8 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
       largest = error;
       worst = &segment;
     }
-    // An error that is smaller by the factor kBetter costs little if the integrands are smooth, and derivatives need
-    // it.
+    // An error of kBetter times the tolerance costs little if the integrands are smooth, and derivatives need this
+    // accuracy.
     const double share = total.error / (tolerance_ * std::fabs(total.value));
     if (!worst || share <= kBetter || (share <= 1 && cells > 2 * start) || cells > kMaxCells) break;
     if (!worst->integral.refine()) break;

@@ -28,11 +28,12 @@ class Volume {
   /// @param inputs  values of the graph's inputs, including the fixed coordinates
   /// @return std::nullopt if the design is not supported, because it is degenerate or interpolation does not converge
   std::optional<Integral<double>> measure(std::span<const double> inputs, Scratch& scratch) const;
-  /// The first part of measure(): finds the ranges of the outer coordinate in which crossings are vertices.
+  /// The first part of measure(): finds the ranges of the outer coordinate in which a crossing of two boundary curves
+  /// is a vertex of the slice.
   /// @return false if the design is not supported
   bool find_ranges(std::span<const double> inputs, Scratch& scratch) const;
-  /// Sorted ends of the ranges, after measure() or find_ranges(), among them all critical values of the outer
-  /// coordinate inside the search box.
+  /// Finds the sorted ends of those ranges of the outer coordinate in which a crossing is a vertex of the slice. They
+  /// include all critical values inside the search box. To be called after measure() or find_ranges().
   void find_critical_values(Scratch& scratch, std::vector<double>& values) const;
   /// Adds the derivatives of the volume with respect to the graph's inputs, after measure().
   void add_gradient(std::span<double> by_input, Scratch& scratch) const;

@@ -190,7 +190,7 @@ bool add_curves_of_mirror_images(const Face& a, const Face& b, std::vector<Curve
   for (const double s : {1.0, -1.0}) {
     const Vector3 m = A.axis - B.axis * s, other_m = A.axis + B.axis * s;
     const double n = s * offset, other_n = -s * offset;
-    // The other factor is 4 l^2 - K_a - K_b = -2 |P|^2 + v . P + r.
+    // The factor 4 l^2 - K_a - K_b in the difference of the equations of the tori is -2 |P|^2 + v . P + r; l is crank.
     const double r = 2 * l_2 + 2 * A.radius * A.radius - dot(between, between);
     Quadric plane, rest;
     if (norm(m) < kCoincident && std::fabs(n) < kCoincident * size) {

@@ -177,8 +177,8 @@ class ProvenSolid {
     }
   }
 
-  /// The function `function()` of faces.hpp in interval arithmetic: its Taylor series along a curve, from the series p
-  /// of the curve's points.
+  /// An implicit function of a body (function() of faces.hpp) in interval arithmetic: its Taylor series along a curve,
+  /// from the series p of the curve's points.
   template <std::size_t N>
   IntervalSeries<N> function(std::size_t index, std::size_t number, const SeriesVector<N>& p) const {
     const IntervalBody& body = bodies_[index];

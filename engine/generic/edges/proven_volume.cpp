@@ -83,7 +83,7 @@ class Proof : public ProvenCurves {
     search(index, middle, to, depth + 1, tests);
   }
 
-  // Integrals.
+  // Integrals along the edges of the solid.
 
   /// Chooses for each whole sphere the point at which its differential form is singular (away_from_pole), far from the
   /// edges.

@@ -71,7 +71,7 @@ std::array<double, 10> by_coefficients(QuadricCoefficients f, const Body& body, 
   const Vector3 b = linear_part(f);
   if (body.kind == Body::Kind::plane) {
     const double length = norm(b);
-    // Derivatives of the quantity with respect to b, multiplied by the length of b.
+    // For the plane f = f_0 + b . p: derivatives with respect to b, multiplied by the length of b.
     const Vector3 along = body.axis * (dot(body.axis, by.axis) + by.radius * body.radius) - by.axis;
     result[0] = by.radius / length;
     for (std::size_t i = 0; i < 3; ++i) result[1 + i] = along[i] / length;

@@ -68,8 +68,7 @@ struct RodAndPath {
 
 /// The inverse kinematics of a limb in closed form.
 struct Limb {
-  Term joint;                           ///< formula of the joint coordinate; undefined if one of `constraints` is
-                                        ///< violated
+  Term joint;                           ///< the joint coordinate; undefined if one of `constraints` is violated
   std::vector<Constraint> constraints;  ///< constraints under which the limb assembles
   /// Residual of the loop-closure equation, closure = 0. With Jq = -d closure/dq and G = d closure/dX, the velocities
   /// satisfy Jq qdot = G Xdot.

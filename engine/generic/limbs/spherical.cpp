@@ -16,7 +16,7 @@ SphericalChain spherical_chain(const Vector3& u, const Vector3& v, const Vector3
   const Vector3 n_1 = cross(u, w), n_2 = cross(w, v);
   const std::array<Term, 3> angles = {atan2(B, A) + branch * acos(C / h), atan2(dot(w, cross(n_1, n_2)), dot(n_1, n_2)),
                                       atan2(dot(v, cross(n_2, reference)), dot(n_2, reference))};
-  // the normal of the second link as a function of the last angle
+  // `normal`: normal of the second link if q is the angle of the last joint
   const Vector3 across = reference - v * dot(v, reference), r = across / length(across);
   const Vector3 normal = r * cos(q) - cross(v, r) * sin(q);
   const std::array<Term, 3> closures = {dot(middle(cos(q), sin(q)), v) - c_2,

@@ -17,7 +17,7 @@ struct SphericalChain {
   /// wrapped.
   std::array<Term, 3> angles;
   std::vector<Constraint> constraints;  ///< constraints under which the chain assembles
-  /// Loop-closure functions, one for each joint that may be driven, see Limb::closure.
+  /// Left sides of the loop-closure equation, closure = 0: one form for each of the three joints that may be driven.
   std::array<Term, 3> closures;
 };
 

@@ -92,7 +92,7 @@ std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderK
   const auto add = [&](const TermMatrix& T, const std::string& velocity, const std::string& force,
                        const std::string& velocity_text, const std::string& force_text, bool is_rotation) {
     if (T.rows() == 0 || T.rows() > T.columns()) return;
-    // In this case, some angular velocities are not produced by any motion of the coordinates.
+    // If T has fewer nonzero columns than rows, no motion of the coordinates produces some of the angular velocities.
     if (is_rotation && T.rows() > nonzero_columns(T)) return;
     const TermMatrix V = T * kinematics.inverse->adjugate;
     const auto [least, greatest] = eigenvalue_range(V * V.transposed());

@@ -11,7 +11,7 @@ using expression::Minors, expression::Term, expression::TermMatrix;
 /// Determinants that are smaller, relative to the sum of the determinants of a matrix, are rounding errors and count as
 /// 0.
 constexpr double kRounding = 1e-12;
-/// Value of a face that does not exist, which restricts nothing.
+/// Value that stands for a face that does not exist; it is so large that it restricts nothing.
 constexpr double kNoFace = 1e300;
 
 Term smaller(const Term& x, const Term& y) { return call(expression::operation("min"), x, y); }
@@ -33,7 +33,7 @@ Term dot(const std::vector<Term>& x, const std::vector<Term>& y) {
   return sum;
 }
 
-/// A pair of parallel faces of the zonotope.
+/// A pair of parallel faces of the zonotope of all drive forces that allowed tensions produce.
 struct Faces {
   std::vector<Term> normal;
   std::vector<std::size_t> cables;  ///< cables whose columns do not lie in the face
@@ -120,7 +120,7 @@ Term factor_of(const Faces& faces) {
     smallest = smaller(smallest, each);
   }
   const Term sum = sum_of(faces.along, graph), positive = faces.sum + sum, negative = faces.sum - sum;
-  // This difference is negative if all components have the same sign.
+  // The ratio `sides` is not positive if no two components along the normal have opposite signs.
   const Term sides = smaller(largest, -smallest) / larger(largest, -smallest);
   const Term rounding(graph, kRounding);
   return if_greater(sides, rounding, smaller(positive, negative) / larger(positive, negative), sides - rounding * 2);

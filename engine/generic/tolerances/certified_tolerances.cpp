@@ -110,7 +110,8 @@ class ToleranceProblem {
     return scale;
   }
 
-  /// Values of the graph's inputs for all robots whose deviations are at most `scale` times the sizes.
+  /// Values of the graph's inputs for all robots whose deviations are at most `scale` times
+  /// ToleranceProportions::sizes.
   std::vector<Interval> inputs(double scale) const {
     std::vector<Interval> robots(parameters_.begin(), parameters_.end());
     for (std::size_t i = 0; i < proportions_.parameters.size(); ++i)
@@ -246,7 +247,7 @@ ToleranceProportions cheapest_proportions(const Mechanism& mechanism, std::span<
   if (largest == 0) return costs;  // all parameters are 0: certified_tolerances() reports this as an error
   const std::size_t count = costs.parameters.size();
   std::vector<ToleranceRow> rows(count);
-  // Factor by which the given proportions are multiplied; these are tried first.
+  // Factor by which `costs.sizes` are multiplied; the products are the first proportions that are tried.
   double scale = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count; ++i) {
     const double value = std::fabs(parameters[costs.parameters[i]]);

@@ -39,8 +39,7 @@ struct ToleranceViolation {
 struct CertifiedTolerances {
   double scale = 0;  ///< all robots whose deviations have at most this scale are proved to do the task
   std::optional<ToleranceViolation> violation;  ///< the robot of smallest scale that is known not to do the task
-  double largest_scale = 0;           ///< smallest scale at which a parameter could become 0; larger scales are not
-                                      ///< examined
+  double largest_scale = 0;           ///< scale at which a parameter could become 0; larger ones are not examined
   Unsupported no_singularities = {};  ///< reason why singularities were not examined; empty if they were
   std::size_t boxes = 0;              ///< number of boxes examined
   bool stopped = false;

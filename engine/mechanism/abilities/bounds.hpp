@@ -86,7 +86,7 @@ class RigorousBounds {
                                  const Motion& motion, const BoundsOptions& options) const = 0;
   /// Tries to prove that every path from one pose to another along which only the swept coordinates of the plan vary
   /// leaves the limits, the plan's box (if it has none, the ranges that contain the workspace), or the working mode,
-  /// or crosses a singularity. Throws std::invalid_argument like volume().
+  /// or crosses a singularity. Throws std::invalid_argument with one sentence if the plan is not supported.
   virtual Separation separate(std::span<const double> parameters, const WorkspacePlan& plan, const std::string& mode,
                               const Pose<double>& from, const Pose<double>& to, const BoundsOptions& options) const = 0;
 };

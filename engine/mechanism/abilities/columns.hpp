@@ -16,7 +16,8 @@ namespace pkm {
 class Columns {
  public:
   virtual ~Columns() = default;
-  /// Throws std::invalid_argument with one sentence if the plan is not supported.
+  /// Prepares the analysis of workspaces by columns. Throws std::invalid_argument with one sentence if the plan is not
+  /// supported.
   virtual std::unique_ptr<const WorkspaceEvaluator> prepare(const WorkspacePlan& plan, const ColumnOptions& columns,
                                                             const FieldRequest& request) const = 0;
   /// @return true if the analysis can be restricted to ColumnOptions::box
@@ -46,7 +47,8 @@ class PoseSides {
 class Voxels {
  public:
   virtual ~Voxels() = default;
-  /// Throws std::invalid_argument with one sentence if the plan is not supported.
+  /// Prepares the analysis of workspaces by voxels. Throws std::invalid_argument with one sentence if the plan is not
+  /// supported.
   virtual std::unique_ptr<const VoxelEvaluator> prepare(const WorkspacePlan& plan, const VoxelOptions& voxels,
                                                         const FieldRequest& request) const = 0;
   /// Prepares PoseSides for a plan; null if no test is faster than inspecting each pose.

@@ -36,7 +36,7 @@ class ForwardKinematics {
   /// guarantee().is_complete. Empty if there is no solution or a continuum of solutions.
   virtual std::vector<AssemblyMode> assemblies(std::span<const double> parameters,
                                                const AxisVector<double>& joints) const = 0;
-  /// Assembly modes found by a search that starts near the pose `from`. By default the same as assemblies().
+  /// Assembly modes found by a search that starts near the pose `from`. By default, all modes that assemblies() finds.
   virtual std::vector<AssemblyMode> assemblies_near(std::span<const double> parameters,
                                                     const AxisVector<double>& joints,
                                                     const Pose<double>& /*from*/) const {

@@ -1,4 +1,4 @@
-// Ability of Columns that also end at singularities.
+// Interface of analyses by columns that can be restricted to poses on one side of the singularities.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ class Mechanism;
 class SidedColumns {
  public:
   virtual ~SidedColumns() = default;
-  /// The same mechanism with poses on one side of its singularities only, for its columns; null if this is not
-  /// supported. @param side  PoseSides::kPositive or PoseSides::kNegative
+  /// The mechanism restricted to poses on one side of its singularities, for an analysis by columns; null if this is
+  /// not supported. @param side  PoseSides::kPositive or PoseSides::kNegative
   virtual std::shared_ptr<const Mechanism> on_side(std::int8_t side) const = 0;
 };
 

@@ -162,14 +162,14 @@ class IpoptSolver final : public Solver {
   explicit IpoptSolver(const Options& options) : options_(options) {}
 
   /// Creates an Ipopt application. Throws std::invalid_argument if an option is invalid. The caller must have locked
-  /// the mutex.
+  /// `ipopt_mutex`.
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application() const {
     Ipopt::SmartPtr<Ipopt::IpoptApplication> app = new Ipopt::IpoptApplication(false);
     const auto options = app->Options();
     options->SetStringValue("sb", "yes");  // Ipopt prints no banner
     options->SetIntegerValue("print_level", 0);
     options->SetStringValue("hessian_approximation", "limited-memory");
-    // The limit of Ipopt is practically infinite, because the stage counts evaluations itself.
+    // Ipopt's limit on iterations is practically infinite, because the stage limits the evaluations itself.
     options->SetIntegerValue("max_iter", 1000000);
     options->SetNumericValue("bound_relax_factor", 0);
     options->SetNumericValue("tol", 1e-9);

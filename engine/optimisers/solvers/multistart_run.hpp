@@ -14,7 +14,7 @@ struct MultistartRun {
   EvaluationTable recorded;  ///< evaluations that an earlier, interrupted run recorded, and which are replayed
   bool ended = false;
   bool is_local = false;      ///< true if this MPI rank runs the solver from this start
-  StartOutcome outcome = {};  ///< its row numbers refer to `table` of this start
+  StartOutcome outcome = {};  ///< outcome of this start, with row numbers of its `table`
   std::string warning = {};
 
   /// Evaluations to be stored in a checkpoint: `recorded` until all of its rows have been replayed, afterwards `table`.

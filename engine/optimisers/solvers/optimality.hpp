@@ -32,7 +32,9 @@ struct ActiveConstraint {
 };
 
 struct Optimality {
-  double optimality = 0;  ///< KKT residual, the largest component of the left-hand side above
+  /// KKT residual: largest component of the Lagrangian's gradient, divided by the objective's magnitude in
+  /// optimality(), but not in evaluate_kkt().
+  double optimality = 0;
   std::vector<ActiveBound> bounds;
   std::vector<ActiveConstraint> margins;
 };

@@ -42,7 +42,7 @@ struct NlpPoint {
 /// The scalarised problem of one start. Reads evaluations of the original problem from a table.
 class ScalarisedProblem {
  public:
-  /// @param start  row of the evaluated start design, which defines the f_i0 and the scaling
+  /// @param start  row of the evaluated start design, whose objective values f_i0 define constraints and scaling
   ScalarisedProblem(const Scalarisation& scalarisation, const Problem& problem, const EvaluationTable& table,
                     std::size_t start);
 
@@ -54,15 +54,15 @@ class ScalarisedProblem {
   /// Computes objective, constraints and derivatives of the nonlinear program from an evaluated row of the table.
   /// @param epigraph  coordinate of t in [0, 1]; ignored if the program has no variable t
   void read(std::size_t row, double epigraph, NlpPoint& point) const;
-  /// Coordinate, in [0, 1], of the smallest t for which the objectives of this row satisfy all constraints g_i <= t; 0
-  /// if the program has no variable t.
+  /// Coordinate, in [0, 1], of the smallest value of the variable t that is not below any scaled change g_i of an
+  /// objective from the start design to this row; 0 if the program has no variable t.
   double epigraph(std::size_t row) const;
 
   /// Rank key of a row as a candidate for the result of this start. It uses the objective values of the table, not the
   /// smooth approximations that the solver minimises.
   RankKey rank(std::size_t row) const;
-  /// Sum of the violations of all constraints of the problem and of the constraints f_i <= f_i0; 0 if all are
-  /// satisfied.
+  /// Sum of the violations of all constraints of the problem and of the constraints f_i <= f_i0, i.e. that no objective
+  /// is worse than at the start design; 0 if all are satisfied.
   double violation(std::size_t row) const;
   /// Scalarised objective of a row, computed from the objective values of the table.
   double value(std::size_t row) const;
@@ -74,7 +74,8 @@ class ScalarisedProblem {
   double sign(std::size_t k) const { return problem_.objectives()[k].direction == Direction::maximise ? -1 : 1; }
   double stored_value(std::size_t row, std::size_t k) const { return sign(k) * table_.objective_row(row)[k]; }
   double smooth_value(std::size_t row, std::size_t k) const;
-  /// g_k = (f_k - f_k0) / r_k at a row, with smooth approximations of the objective f_k.
+  /// Change g_k = (f_k - f_k0) / r_k of objective k from the start design to a row, divided by its range r_k over the
+  /// known front; f_k are smooth approximations.
   double scaled_change(std::size_t row, std::size_t k) const {
     return (smooth_value(row, k) - start_values_[k]) / scalarisation_.extents[k];
   }

@@ -108,7 +108,7 @@ class SolverStageRun {
         return !merger_.stopped();
       }
       while (const auto message = ranks::poll()) {
-        // The sender's stage, identified by its seed: a message may arrive after the end of that stage.
+        // Seed of the stage to which the message belongs: a message may arrive after the end of its stage.
         std::uint64_t stage = 0;
         std::memcpy(&stage, message->data(), sizeof stage);
         if (stage == input_.seed) receive(*message, sizeof stage);

@@ -51,7 +51,8 @@ Capabilities solver_capabilities(const Options& options, bool constraints, bool 
 
 /// Specifications of the options common to all solver stages.
 std::vector<OptionSpec> solver_options();
-/// Reads the common options; the caller sets the solver. Throws std::invalid_argument for contradictory options.
+/// Reads the options common to all solver stages; the caller sets SolverPlan::solver. Throws std::invalid_argument for
+/// contradictory options.
 SolverPlan solver_plan(const Options& options);
 OptionSpec tighten_option();
 

@@ -183,7 +183,8 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
       may_bisect = may_bisect || !root.is_enclosed;
       all_continuous = all_continuous && root.is_continuous;
       if (root.is_enclosed) {
-        // Extend R by one step on either side, because a proof checker may round differently.
+        // Extend the enclosure R of the root by one grid step on either side, because a proof checker may round
+        // differently.
         const std::int64_t low =
             std::max(grid_.step_below(root.range.lower, segment.from, segment.to) - 1, segment.from);
         const std::int64_t high = std::min(grid_.step_above(root.range.upper, low, segment.to) + 1, segment.to);

@@ -58,7 +58,7 @@ struct Step {
     violated = 'x',    ///< `constraint` is violated on the segment, which is infeasible
     satisfied = 'h',   ///< `constraint` is satisfied on the segment
     contracted = 't',  ///< all roots of `constraint` lie in [from, to], by the mean value theorem about `expansion`
-    split = 's',       ///< divided at `from` and `to` into up to three segments
+    split = 's',       ///< the segment is divided at `from` and `to` into up to three segments
     /// The only undecided constraint has exactly one root over every x, by the mean value theorem about `expansion`.
     one_root = 'r',
     open = 'n',  ///< the segment remains undecided
@@ -99,8 +99,8 @@ class ColumnPruner {
   /// The root z*(x) of a constraint along z, for all x in a box.
   struct Root {
     bool is_continuous = false;  ///< true: the constraint is continuous on the box and the segment
-    bool is_enclosed = false;    ///< true: the constraint is strictly monotonic in z there; `range` and `mean` are
-                                 ///< valid
+    bool is_enclosed = false;    ///< true: the constraint is strictly monotonic in z on the box and the segment;
+                                 ///< `range` and `mean` are valid
     bool is_increasing = false;  ///< true: the constraint increases with z
     Interval range;              ///< R: contains z*(x) for all x of the box
     Interval mean;               ///< contains the mean of z* over the box

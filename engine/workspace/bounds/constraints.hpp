@@ -40,8 +40,8 @@ class Constraints {
     friend Constraints;
     std::vector<Interval> registers_;
     std::vector<std::uint64_t> versions_;   ///< for each register, the version of the inputs for which it was computed
-    std::vector<std::uint64_t> evaluated_;  ///< for each subprogram, the version of the box for which its outer steps
-                                            ///< were run
+    std::vector<std::uint64_t> evaluated_;  ///< for each subprogram, the version of the box for which its steps
+                                            ///< that do not depend on the last axis were run
     std::uint64_t version_ = 0, box_version_ = 0, last_version_ = 0;
     Interval last_side_;  ///< side of the box along the last axis
   };

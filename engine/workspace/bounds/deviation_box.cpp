@@ -18,7 +18,7 @@ using Gradient = ParametricConstraints::Gradient;
 struct SearchBox {
   AxisSides sides;  ///< intervals of the coordinates of the pose, then of the deviations of the parameters
   std::vector<std::uint32_t> open;  ///< indices of the undecided constraints
-  double scale = 0;                 ///< no point of the box with all |d_i| <= scale violates a constraint
+  double scale = 0;                 ///< no point of the box whose deviations are |d_i| <= scale violates a constraint
   std::uint64_t number = 0;         ///< number of the box in the order of creation
   // Results of examine():
   bool is_decided = false;
@@ -91,7 +91,7 @@ class DeviationBranchAndBound {
   double limit() const { return violation_ ? violation_->scale : largest_; }
   double target() const { return violation_ ? violation_->scale * (1 - options_.gap) : largest_; }
 
-  /// Decides a box for deviations up to the target, or improves its bound.
+  /// Tries to prove all constraints on a box for deviations up to target(); if this fails, may increase box.scale.
   void examine(SearchBox& box, Worker& worker) const {
     const std::size_t axes = constraints_.axes(), first = ranges_.size();
     const double target = this->target();
@@ -146,8 +146,8 @@ class DeviationBranchAndBound {
     return constraints_.value(k, worker.point, worker.scratch) + change;
   }
 
-  /// A scale t such that constraint k is satisfied for all |d_i| <= t: from a lower bound of its value for d = 0, and
-  /// from its derivatives with respect to the deviations.
+  /// A scale t such that constraint k is satisfied for all deviations |d_i| <= t: from a lower bound of its value
+  /// without deviations, and from its derivatives with respect to the deviations.
   double scale_of(std::size_t k, const AxisSides& sides, Worker& worker) const {
     AxisSides nominal = sides;
     Interval slope(0.0);
@@ -180,8 +180,8 @@ class DeviationBranchAndBound {
     const std::size_t poses = ranges_.size();
     for (const std::vector<double>* point : {&middle, &vertex})
       keep(search_.at_pose(k, std::span(*point).first(poses), known(), worker.scratch));
-    // The search above uses gradients at d = 0. If the constraint is far from linear, the worst corner may be another
-    // one: also search along the ray towards the vertex of the box.
+    // at_pose() starts with gradients for zero deviations. If the constraint is far from linear, the worst corner may
+    // be another one: also search along the ray towards the vertex of the box.
     std::vector<double> unused, direction(vertex.begin() + static_cast<std::ptrdiff_t>(poses), vertex.end());
     double scale = 0;
     for (const double d : direction) scale = std::max(scale, std::fabs(d));
@@ -207,8 +207,8 @@ class DeviationBranchAndBound {
         worker.point[i] = middle;
       }
     }
-    // If a share is unbounded, only the axes with unbounded shares count, in proportion to the lengths of the box's
-    // sides relative to the whole range.
+    // If an axis has an unbounded share of the uncertainty, only such axes count, in proportion to the lengths of the
+    // box's sides relative to the whole range.
     const bool bounded = std::ranges::all_of(own, [](double x) { return std::isfinite(x); });
     double sum = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {

@@ -17,7 +17,7 @@
 
 namespace pkm::bounds {
 
-/// Immutable and thread-safe.
+/// Computes boxes that contain all feasible poses. Immutable and thread-safe.
 class FeasibleHull {
  public:
   /// @param constraints  nodes of the graph
@@ -32,19 +32,19 @@ class FeasibleHull {
   /// @return a box that contains all feasible poses; its sides are infinite if no bounds are proven. If no pose is
   ///         feasible, the box that bound() returns
   IntervalBox find(std::span<const Interval> inputs, const IntervalBox& start, double scale) const;
-  /// The first step of find(): cuts unbounded ranges, as far as the rest is proven infeasible.
+  /// The first step of find(): cuts unbounded ranges where the poses beyond the cut are proven infeasible.
   IntervalBox bound(std::span<const Interval> inputs, const IntervalBox& start, double scale) const;
 
  private:
   class Search;
   struct Constraint {
-    std::uint32_t output;                          ///< register of its value
+    std::uint32_t output;                          ///< register that holds the value of the constraint
     std::vector<expression::Program::Step> steps;  ///< steps that depend on the axes
   };
 
   std::vector<std::size_t> axes_;
   std::size_t inputs_;
-  std::vector<double> numbers_;  ///< constants of the formulas, which are inputs of the program after the others
+  std::vector<double> numbers_;  ///< constants of the formulas: inputs of the program after those of the graph
   expression::Program program_;
   /// By axis: the register of its input; std::nullopt: no constraint depends on the axis.
   std::vector<std::optional<std::uint32_t>> registers_;

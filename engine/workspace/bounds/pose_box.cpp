@@ -58,7 +58,8 @@ std::optional<AxisMatrix<double>> midpoint_matrix(std::span<const Interval> entr
 bool has_full_rank(std::span<const Interval> entries, std::size_t rows, std::size_t columns) {
   const auto midpoint = midpoint_matrix(entries, rows, columns);
   if (!midpoint || is_rank_deficient(*midpoint)) return false;
-  // An approximate left inverse of A is sufficient: if its product with A has full rank, then A has full column rank.
+  // An approximate left inverse of a matrix A is sufficient: if its product with A has full rank, then A has full
+  // column rank.
   const AxisMatrix<double> inverse = rows == columns ? solve(*midpoint, AxisMatrix<double>::identity(rows))
                                                      : solve(transpose(*midpoint) * *midpoint, transpose(*midpoint));
   // Comparison matrix of the product: minimum of the diagonal elements, minus the maximum magnitude of the others.
@@ -166,8 +167,8 @@ struct Box {
   /// Index of a constraint that is violated at the sample; the sample is then proven to be in the solid.
   std::optional<std::size_t> violated;
   std::optional<std::size_t> undecided;  ///< index of the first matrix that is not proven to have full rank on the box
-  int determinant_sign = 0;              ///< sign of this matrix's determinant at the sample; 0: unknown
-  bool is_singular_at_sample = false;    ///< this matrix is singular at the sample, to working precision
+  int determinant_sign = 0;              ///< sign of the determinant of matrix `undecided` at the sample; 0: unknown
+  bool is_singular_at_sample = false;    ///< matrix `undecided` is singular at the sample, to working precision
   std::size_t axis = 0;                  ///< axis of the next bisection
 };
 

@@ -89,7 +89,8 @@ std::optional<Violation> ViolationSearch::at_pose(std::size_t k, std::span<const
   if (!(scale < kSearchedBeyondLimit * limit)) return {};
   std::optional<Violation> best;
   std::vector<double> s = worst_corner(std::span(gradient).subspan(pose.size()));
-  // This is repeated, because the gradient at the violation may indicate another vertex.
+  // The search along a ray is repeated, because the gradient at the violation may indicate another vertex of the box of
+  // deviations.
   for (int corner = 0; corner < 3; ++corner) {
     const auto found = along(k, pose, s, scale, best ? best->scale : limit, scratch);
     if (!found) break;
@@ -101,7 +102,8 @@ std::optional<Violation> ViolationSearch::at_pose(std::size_t k, std::span<const
     s = there;
   }
   if (!best) return {};
-  // The gradient is computed slightly closer to d = 0, because a square root may have no derivatives at the violation.
+  // The gradient is computed at slightly smaller deviations, because a square root may have no derivatives at the
+  // violation.
   point = best->point;
   for (std::size_t i = pose.size(); i < point.size(); ++i) point[i] *= 1 - kGradientDistance;
   constraints_.gradient(k, point, best->gradient, scratch);

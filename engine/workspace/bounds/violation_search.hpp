@@ -51,8 +51,8 @@ class ViolationSearch {
                                  double limit, ParametricConstraints::Scratch& scratch) const;
 
  private:
-  /// First-order estimate (1) of the scale at which constraint k is violated: 0 if it is violated for d = 0, infinity
-  /// if it does not depend on the deviations d.
+  /// First-order estimate g / sum_i |dg/dd_i| of the scale at which constraint k is violated: 0 if it is violated at
+  /// `point` itself, infinity if it does not depend on the deviations d_i.
   /// @param gradient  receives the derivatives at the pose
   double first_order(std::size_t k, std::span<const double> point, std::vector<double>& gradient,
                      ParametricConstraints::Scratch& scratch) const;
