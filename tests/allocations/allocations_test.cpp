@@ -49,7 +49,7 @@ namespace {
 /// of a home pose, and statistics over built machines.
 std::vector<std::string> experiments() {
   const std::set<std::string> excluded = {"motions", "mechanisms", "motors", "obstacles", "quantities", "connectivity",
-                                          "tasks",   "tolerances", "cables", "frames"};  // folders
+                                          "tasks",   "tolerances", "cables", "frames",    "chains"};  // folders
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(PKM_EXPERIMENTS)) {
     if (entry.path().extension() != ".toml" || excluded.contains(entry.path().parent_path().filename().string()))

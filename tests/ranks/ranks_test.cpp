@@ -289,14 +289,14 @@ type = "workspace-volume"
 TEST_F(Ranks, StopTogetherOnASignalOrATimeLimit) {
   write_toml("[[stage]]\noptimiser = \"ga\"\npopulation = 40\ngenerations = 100000\n", std::string(kHead) + kRatio);
   EXPECT_EQ(run_on(2, {"run", "study.toml", "--output", "time.h5", "--quiet", "--time", "300ms"}), 3) << output_;
-  EXPECT_THAT(output_, HasSubstr("stopped by time limit after "));
+  EXPECT_THAT(output_, HasSubstr("stopped by time limit, exit code 3, after "));
   EXPECT_EQ(read("time.h5").state, StudyState::interrupted);
   ChildProcess child(mpi_command(2, {"run", "study.toml", "--output", "signal.h5", "--quiet"}), folder_);
   while (!fs::exists(path("signal.h5"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   for (const pid_t rank : find_ranks("signal.h5")) kill(rank, SIGTERM);
   EXPECT_EQ(child.wait(), 3) << child.output();
-  EXPECT_THAT(child.output(), HasSubstr("stopped by SIGTERM after "));
+  EXPECT_THAT(child.output(), HasSubstr("stopped by SIGTERM, exit code 3, after "));
 }
 
 TEST_F(Ranks, AreNamedIfTheirResultsDiffer) {
