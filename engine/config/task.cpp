@@ -116,7 +116,7 @@ class TaskOfRobot {
     }
   }
 
-  /// A list of the task's tables under `key`, each written for the robot.
+  /// A list of the task's tables under `key`, each converted by `written` to the coordinates of the robot.
   TomlValue tables_of_robot(const std::string& key, TomlValue (TaskOfRobot::*written)(const TomlValue&) const) const {
     TomlValue tables = list_value();
     if (const TomlValue* const all = task_.document.find(key))

@@ -32,7 +32,7 @@ class NonDominatedSet {
   explicit NonDominatedSet(std::size_t objectives, std::size_t limit = 0) : limit_(limit), scores_{objectives} {}
 
   /// Adds designs, given by their scores; `ids` has one identifier for each row of `scores`.
-  /// @return true if at least one of them became a member
+  /// @return true if at least one of them became a member of the non-dominated set
   bool add(const Scores& scores, std::span<const std::int64_t> ids);
 
   std::size_t size() const { return ids_.size(); }

@@ -155,8 +155,8 @@ class GridSearch {
   /// For each axis, the range of indices that the central cell can have: first, end (excluded).
   std::array<std::array<std::int64_t, 2>, 3> range_{};
   std::vector<RowOfCells> rows_;
-  std::array<std::int64_t, 3> half_{};  ///< for each axis, the largest distance of a cell of the solid from the central
-                                        ///< cell
+  /// For each axis, the largest distance, in cells, of a cell of the solid from the central cell.
+  std::array<std::int64_t, 3> half_{};
 };
 
 }  // namespace

@@ -71,7 +71,7 @@ double step_at(const SmoothInterval& part, bool upper) {
 /// The set of points of a slice that are feasible on one side of a critical value and infeasible on the other side.
 /// `in` and `out` are the scratch memories of the slices on these two sides.
 struct NestedIntegral::OneSided {
-  std::size_t level;  ///< level of the coordinate that has the critical value
+  std::size_t level;  ///< nesting level of the integral over the coordinate to which the critical value belongs
   IntegralScratch &in, &out;
   const OneSidedVisitor& visit;
 };

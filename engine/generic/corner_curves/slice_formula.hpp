@@ -34,7 +34,7 @@ struct SliceFormula {
   Formula formula;
   const double* registers = nullptr;  ///< values of the program's registers
   Signs constant = 0;                 ///< set of the surfaces that are >= 0 in the whole slice
-  std::vector<Literals> literals;     ///< one element for each boundary curve
+  std::vector<Literals> literals;     ///< for each boundary curve, the surfaces that change their sign at it
   std::vector<Strip> strips;
   std::vector<Bound> bounds;
 

@@ -63,7 +63,7 @@ class Matrices {
   Scratch initial_;
 };
 
-/// Examines a solid of poses, given over the axes.
+/// Examines all poses of a solid, whose dimensions are those of the axes.
 /// @param matrices  null: regularity is not examined
 PoseCertificate certify(const Constraints& constraints, const Matrices* matrices, const PoseSolid& poses,
                         const BoundsOptions& options);
