@@ -28,7 +28,8 @@ std::array<double, 2> decimal_step(double number) {
 Interval rounded_outward(const Interval& range) {
   const double width = range.width();
   if (!(width > 0) || !std::isfinite(width)) return range;
-  const auto [numerator, denominator] = decimal_step(width / 50);
+  const std::array<double, 2> unit = decimal_step(width / 50);
+  const double numerator = unit[0], denominator = unit[1];
   const auto at = [&](double step) { return step * numerator / denominator; };
   double from = std::floor(range.lower / numerator * denominator),
          to = std::ceil(range.upper / numerator * denominator);
