@@ -155,7 +155,7 @@ void run(std::vector<std::string> arguments, Session& session) {
   app.footer(kProgramNotes);
   if (arguments[0] == "help") {  // "help", "help COMMAND": like "--help", "COMMAND --help"
     arguments[0] = "--help";
-    std::ranges::rotate(arguments, arguments.begin() + 1);
+    std::rotate(arguments.begin(), arguments.begin() + 1, arguments.end());
   }
   // Only the command that is named is declared, because declaring all commands takes longer than executing most of
   // them.
