@@ -26,6 +26,8 @@ set(PKM_TESTS_OF_RELEASE
   OutlineAreaEqualsCellCount ProofsAreAccepted ReportProgram.IsTheSameOnAny TheEstimateCounts AFinishedStudyGetsMore
   StartsFromDistinctBasins OneTwoAndSevenThreads SolverProgram.ThreadsDoNotMatter ClaimDesignsDynamically Ranks.StopTogether Ranks.WarnOfMore
   Ranks.RunSeeds Ranks.AreReported Ranks.RunOther Ranks.EndTogether Ranks.AreNamedIfTheirResults
+  MechanismFile.Forward MechanismFile.PoseNames MechanismFile.WithAnUnknown MechanismFile.AStudyRefers
+  MechanismFile.ANewStudy
   GivesTheSameFile GiveTheSameFile Bounds.AreTheSame RigorousBounds.HoldVolumes GenericColumns.AreTheExactOnes
   SampleInsideTheWorkspace IsTheLeastDistanceOf Portable.ErrorsStayWithin GenericColumns.AreTheGoldenVolumes
   HaveTheGoldenDerivatives Bounds.OfABall RigorousBounds.OfMotions SurveysTheInertiaThatItsEquations
