@@ -15,17 +15,6 @@ bool matches(std::string_view pattern, std::string_view name) {
   return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
 }
 
-/// A copy of a table without one of its keys.
-TomlValue without(const TomlValue& table, const std::string& key) {
-  TomlValue rest = table;
-  rest.keys.clear();
-  rest.items.clear();
-  rest.order.clear();
-  for (std::size_t i = 0; i < table.keys.size(); ++i)
-    if (table.keys[i] != key) set_key(rest, table.keys[i], table.items[i]);
-  return rest;
-}
-
 /// Names the copies that a pattern stands for, except those in `alone`, which are variables themselves.
 /// @param copies  all copies of the parameter
 std::vector<std::string> copies_of(const ConfigValue& entry, const LimbParameter& pattern,
@@ -63,9 +52,7 @@ TomlValue with_limb_patterns(const TomlValue& study, const std::string& file_nam
   std::ranges::copy_if(keys, std::back_inserter(alone), [](const std::string& key) { return !is_pattern(key); });
   std::optional<SourceText> text;
 
-  TomlValue expanded = *variables;
-  for (const std::string& key : variables->keys)
-    if (is_pattern(key)) expanded = without(expanded, key);
+  TomlValue expanded = filtered(*variables, [](const std::string& key) { return !is_pattern(key); });
   for (const std::string& key : keys) {
     if (!is_pattern(key)) continue;
     const ConfigValue entry = *table.find(key);
@@ -89,7 +76,7 @@ TomlValue with_limb_patterns(const TomlValue& study, const std::string& file_nam
     if (!tie || !tie->flag()) {
       for (const std::string& name : names) {
         if (expanded.find(name)) throw entry.refusal(name + " matches two patterns; expected one");
-        set_key(expanded, name, without(entry.toml(), "tie"));
+        set_key(expanded, name, filtered(entry.toml(), [](const std::string& option) { return option != "tie"; }));
       }
       continue;
     }

@@ -189,15 +189,10 @@ ConfigValue rewritten(const Chain& chain, MechanismDraft& draft) {
   const ConfigValue& table = chain.table;
   const ChainForm& form = form_of(chain);
   const bool is_usual = chain.driven == chain.usual;
-  const TomlValue& result = table.toml();
   const std::vector<std::string> names = {"drive", "chain", "axes", "links", "driven", "joint_ranges"};
-  TomlValue kept = result;
-  kept.keys.clear();
-  kept.items.clear();
-  kept.order.clear();
-  for (const std::string& key : result.keys)
-    if (!contains(names, key) && (is_usual || key != "range") && (chain.drive == "crank" || key != "zero"))
-      set_key(kept, key, *result.find(key));
+  TomlValue kept = filtered(table.toml(), [&](const std::string& key) {
+    return !contains(names, key) && (is_usual || key != "range") && (chain.drive == "crank" || key != "zero");
+  });
   const bool counts_from_zero = chain.joints == "PRRR" || chain.joints.starts_with("R");
   if (const auto zero = table.find("zero"); zero && !counts_from_zero)
     throw zero->refusal("`zero` has no effect on the chain " + with_dashes(chain.joints));

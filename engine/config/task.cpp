@@ -21,18 +21,6 @@ using Names = std::vector<std::string>;
 
 constexpr std::int64_t kCells = 16;  // number of cells of a region along each axis, if the task does not set it
 
-/// A copy of a table with only the entries for which keep(key) is true.
-template <class Keep>
-TomlValue filtered(const TomlValue& table, const Keep& keep) {
-  TomlValue result = table;
-  result.keys.clear();
-  result.items.clear();
-  result.order.clear();
-  for (std::size_t i = 0; i < table.keys.size(); ++i)
-    if (keep(table.keys[i])) set_key(result, table.keys[i], table.items[i]);
-  return result;
-}
-
 TomlValue text_value(const std::string& text) { return {.kind = Kind::text, .text = text, .written = text}; }
 TomlValue number_value(double number) { return {.kind = Kind::number, .number = number, .written = shortest(number)}; }
 TomlValue list_value() { return {.kind = Kind::array}; }

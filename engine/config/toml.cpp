@@ -180,6 +180,16 @@ void set_key(TomlValue& table, const std::string& key, TomlValue value) {
   std::ranges::sort(table.order, {}, [&table](std::size_t i) { return table.keys[i]; });
 }
 
+TomlValue filtered(const TomlValue& table, const std::function<bool(const std::string& key)>& keep) {
+  TomlValue result = table;
+  result.keys.clear();
+  result.items.clear();
+  result.order.clear();
+  for (std::size_t i = 0; i < table.keys.size(); ++i)
+    if (keep(table.keys[i])) set_key(result, table.keys[i], table.items[i]);
+  return result;
+}
+
 TomlValue parse_toml(const std::string& text, const std::string& file, const std::string& expected) {
   if (const int line = line_too_deep(text))
     throw ConfigError({file, line, ""}, "tables nested too deeply", "keys of at most 16 parts, in at most 32 brackets");

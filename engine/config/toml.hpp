@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct TomlValue {
 
 /// Sets the value of a key of a table.
 void set_key(TomlValue& table, const std::string& key, TomlValue value);
+
+/// A copy of a table with only those entries for which keep(key) is true.
+TomlValue filtered(const TomlValue& table, const std::function<bool(const std::string& key)>& keep);
 
 /// Parses `text`. Throws ConfigError with the line if it is not valid TOML (duplicate keys, bytes that are not UTF-8,
 /// ...). `file` and `expected`, a description of the contents, are for messages.
