@@ -59,6 +59,10 @@ bool depends_on_range_ends(const Model& model, const Program& program) {
   throw DesignError("mechanism " + model.info.name + " has no [survey] box for " + name +
                     ", and its limbs do not bound it; " + advice_for_box(name));
 }
+std::array<double, 2> finite_range(const Model& model, std::size_t coordinate, const Interval& range) {
+  if (!std::isfinite(range.width())) throw_unbounded(model, coordinate);
+  return {range.lower, range.upper};
+}
 
 }  // namespace
 
@@ -210,9 +214,7 @@ std::optional<std::array<double, 2>> Evaluation::range(std::span<const double> p
 std::array<double, 2> Evaluation::required_range(std::span<const double> parameters, const WorkspacePlan& plan,
                                                  std::size_t mode, std::size_t coordinate) const {
   if (model.is_contracted[coordinate]) {
-    const Interval range = contract(parameters, plan.limits, mode, &plan)[coordinate];
-    if (!std::isfinite(range.width())) throw_unbounded(model, coordinate);
-    return {range.lower, range.upper};
+    return finite_range(model, coordinate, contract(parameters, plan.limits, mode, &plan)[coordinate]);
   }
   if (const auto known = range(parameters, plan.limits, mode, coordinate)) return *known;
   throw_unbounded(model, coordinate);
@@ -266,8 +268,14 @@ Box Evaluation::search_box(std::span<const double> parameters, const WorkspacePl
   if (const auto given = plan.box()) return *given;
   Box box;
   box.fill({0, 1});
-  for (std::size_t axis = 0; axis < swept.size(); ++axis)
-    box[axis] = required_range(parameters, plan, mode, static_cast<std::size_t>(swept[axis]));
+  const auto is_contracted = [this](int i) { return bool(model.is_contracted[static_cast<std::size_t>(i)]); };
+  std::optional<bounds::IntervalBox> contracted;
+  if (std::ranges::any_of(swept, is_contracted)) contracted = contract(parameters, plan.limits, mode, &plan);
+  for (std::size_t axis = 0; axis < swept.size(); ++axis) {
+    const auto i = static_cast<std::size_t>(swept[axis]);
+    box[axis] = is_contracted(swept[axis]) ? finite_range(model, i, (*contracted)[i])
+                                           : required_range(parameters, plan, mode, i);
+  }
   return box;
 }
 
