@@ -33,18 +33,8 @@ Unsupported HaarMeasure::refusal(const Model& model) {
   return {};
 }
 
-HaarMeasure::HaarMeasure(const Model& model) : angles_(angles_of(model)) {
-  is_proper_euler_ = axis_of(model, angles_[0]) == axis_of(model, angles_[2]);
-  std::vector<Node> nodes;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto coordinate = static_cast<std::size_t>(angles_[i]);
-    inputs_[i] = model.inputs.coordinate(coordinate);
-    nodes.insert(nodes.end(), model.rotation_directions[coordinate].begin(),
-                 model.rotation_directions[coordinate].end());
-  }
-  directions_ = expression::Program(model.graph, nodes);
-  count_ = model.inputs.count();
-}
+HaarMeasure::HaarMeasure(const Model& model)
+    : angles_(angles_of(model)), is_proper_euler_(axis_of(model, angles_[0]) == axis_of(model, angles_[2])) {}
 
 Box HaarMeasure::principal_ranges() const {
   const std::array<double, 2> middle = is_proper_euler_ ? std::array{0.0, kPi} : std::array{-kPi / 2, kPi / 2};
@@ -61,25 +51,10 @@ std::array<double, 3> HaarMeasure::equivalent(const std::array<double, 3>& angle
   return {wrapped(a + kPi), wrapped(is_proper_euler_ ? -b : kPi - b), wrapped(c + kPi)};
 }
 
-double HaarMeasure::measure_of_cell(const std::array<std::array<double, 2>, 3>& cell) const {
-  // Gauss-Legendre quadrature with two nodes along each angle
-  std::vector<double> inputs(count_), registers;
-  double sum = 0, volume = 1;
-  for (const auto& [lower, upper] : cell) volume *= upper - lower;
-  for (unsigned node = 0; node < 8; ++node) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double middle = (cell[i][0] + cell[i][1]) / 2, half = (cell[i][1] - cell[i][0]) / 2;
-      inputs[inputs_[i]] = middle + (node >> i & 1 ? half : -half) / std::sqrt(3.0);
-    }
-    directions_.run_all<double>(inputs, registers);
-    const auto e = [&](std::size_t column, std::size_t row) {
-      return registers[directions_.outputs()[3 * column + row]];
-    };
-    sum += std::fabs(e(0, 0) * (e(1, 1) * e(2, 2) - e(1, 2) * e(2, 1)) +
-                     e(0, 1) * (e(1, 2) * e(2, 0) - e(1, 0) * e(2, 2)) +
-                     e(0, 2) * (e(1, 0) * e(2, 1) - e(1, 1) * e(2, 0)));
-  }
-  return volume * sum / 8;
+double HaarMeasure::antiderivative(double middle_angle) const {
+  const double b = middle_angle;
+  if (is_proper_euler_) return std::copysign(1 - std::cos(b), b);
+  return std::fabs(b) <= kPi / 2 ? std::sin(b) : std::copysign(2 - std::fabs(std::sin(b)), b);
 }
 
 double HaarMeasure::measure(const VoxelMap& map) const {
@@ -92,7 +67,9 @@ double HaarMeasure::measure(const VoxelMap& map) const {
   double sum = 0;
   Cell cell;
   for (cell[1] = 0; cell[1] < grid.cells[1]; ++cell[1]) {
-    const double middle = grid.centre(1, cell[1]);
+    const double middle = grid.centre(1, cell[1]), lower = grid.lower[1] + static_cast<double>(cell[1]) * grid.step[1];
+    const double measure_of_cell =
+        grid.step[0] * grid.step[2] * (antiderivative(lower + grid.step[1]) - antiderivative(lower));
     for (cell[0] = 0; cell[0] < grid.cells[0]; ++cell[0])
       for (cell[2] = 0; cell[2] < grid.cells[2]; ++cell[2]) {
         if (!map.feasible[grid.index(cell)]) continue;
@@ -101,12 +78,7 @@ double HaarMeasure::measure(const VoxelMap& map) const {
           const Cell other{cell_at(0, same[0]), cell_at(1, same[1]), cell_at(2, same[2])};
           if (other[0] >= 0 && other[1] >= 0 && other[2] >= 0 && map.feasible[grid.index(other)]) continue;
         }
-        std::array<std::array<double, 2>, 3> sides;
-        for (std::size_t i = 0; i < 3; ++i) {
-          const double lower = grid.lower[i] + static_cast<double>(cell[i]) * grid.step[i];
-          sides[i] = {lower, lower + grid.step[i]};
-        }
-        sum += measure_of_cell(sides);
+        sum += measure_of_cell;
       }
   }
   return sum;

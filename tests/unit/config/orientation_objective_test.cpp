@@ -7,6 +7,7 @@
 
 #include "tests/unit/config/real_studies.hpp"
 #include "tests/unit/generic/files.hpp"
+#include "tests/unit/generic/tilting.hpp"
 
 namespace pkm::orientation_objective {
 namespace {
@@ -57,23 +58,7 @@ TEST(OrientationWorkspace, AtAPointAndAtAllPointsOfABox) {
 
 /// Directions within 60 deg of the vertical, with any rotation about them.
 TEST(OrientationWorkspace, OfACone) {
-  const std::string text = R"toml(
-[mechanism]
-name = "tilting"
-[parameters]
-tilt = { default = "60 deg", min = 0, max = "180 deg" }
-[platform]
-coordinates = { a = "about z", b = "about y", c = "about z" }
-[[limb]]
-name = "motors"
-drive = "formula"
-joints = { p = "a", q = "b", r = "c" }
-unit = "rad"
-[[margin]]
-name = "tilt"
-formula = "(platform.R*[0, 0, 1]).z - cos(tilt)"
-unit = "1"
-)toml";
+  const std::string text = test::text_of_tilting("zyz");
   const Study study = study_of(
       "tilting", text, "[variables]\ntilt = { min = 0.5, max = 1.5 }\n[[output]]\ntype = \"orientation-workspace\"\n");
   const double pi = std::numbers::pi;

@@ -8,36 +8,15 @@
 #include "engine/workspace/voxel_grid.hpp"
 #include "tests/unit/contracts/mechanism_fixtures.hpp"
 #include "tests/unit/generic/files.hpp"
+#include "tests/unit/generic/tilting.hpp"
 
 namespace pkm::test {
 namespace {
 
 constexpr double kAll = 8 * kPi * kPi;
 
-/// A platform whose tilt, the angle between its z axis and that of the base, is at most `tilt`.
 std::shared_ptr<const Mechanism> tilted(const std::string& axes) {
-  std::string text = R"toml(
-[mechanism]
-name = "tilting"
-[parameters]
-tilt = { default = "60 deg", min = 0, max = "180 deg" }
-[platform]
-coordinates = { a = "about 1", b = "about 2", c = "about 3" }
-[[limb]]
-name = "motors"
-drive = "formula"
-joints = { p = "a", q = "b", r = "c" }
-unit = "rad"
-[[margin]]
-name = "tilt"
-formula = "(platform.R*[0, 0, 1]).z - cos(tilt)"
-unit = "1"
-)toml";
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::string number = "about " + std::to_string(k + 1);
-    text.replace(text.find(number), number.size(), "about " + axes.substr(k, 1));
-  }
-  return read_mechanism_toml(text, "tilting.toml");
+  return read_mechanism_toml(test::text_of_tilting(axes), "tilting.toml");
 }
 
 VoxelMap map_of(const Mechanism& mechanism, double tilt, const Box& box, const std::array<std::int64_t, 3>& cells) {
