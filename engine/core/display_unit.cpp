@@ -58,9 +58,13 @@ DisplayUnit display_unit(std::string_view si_unit, double magnitude) {
   return display_unit(si_unit);
 }
 
+std::string with_name(const std::string& text, const DisplayUnit& unit) {
+  return unit.name.empty() || unit.name == "1" ? text : text + " " + unit.name;
+}
+
 std::string display_text(double value, std::string_view si_unit) {
   const DisplayUnit unit = display_unit(si_unit);
-  return text_in(unit, value) + (unit.name.empty() || unit.name == "1" ? "" : " " + unit.name);
+  return with_name(text_in(unit, value), unit);
 }
 
 std::string display_range(double lower, double upper, std::string_view si_unit) {

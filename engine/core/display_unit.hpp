@@ -18,6 +18,8 @@ DisplayUnit display_unit(std::string_view si_unit);
 /// "kN". Values that are printed in one unit, such as those of a table row, share the unit of the largest.
 DisplayUnit display_unit(std::string_view si_unit, double magnitude);
 
+/// A text followed by the name of its unit, if it has one.
+std::string with_name(const std::string& text, const DisplayUnit& unit);
 /// Formats a given value, which is not rounded, in its display unit: "200 mm", "75 deg", "2 kg".
 std::string display_text(double value, std::string_view si_unit);
 /// Formats a given range in its display unit: "0 .. 2000 mm".

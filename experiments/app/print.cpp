@@ -12,11 +12,6 @@ namespace {
 
 std::optional<int> chosen_digits;  // value of --digits
 
-/// Text with the name of its unit, if it has one.
-std::string with_name(const std::string& text, const DisplayUnit& unit) {
-  return unit.name.empty() || unit.name == "1" ? text : text + " " + unit.name;
-}
-
 /// Text of a number with this number of significant digits.
 std::string format_digits(double value, int count) {
   if (std::isnan(value)) return "-";

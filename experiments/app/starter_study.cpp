@@ -71,7 +71,7 @@ std::string toml_value(double value, const std::string& unit) {
 double rounded(double value, const std::string& unit) {
   const DisplayUnit shown = display_unit(unit);
   const std::string text = formatted("%.2g", value / shown.size);
-  return parse_quantity(shown.name == "1" || shown.name.empty() ? text : text + " " + shown.name, unit).value();
+  return parse_quantity(with_name(text, shown), unit).value();
 }
 
 /// A bound of a variable: a multiple of its default value, rounded, within the parameter's range.
