@@ -11,7 +11,7 @@ wait_for_packages() {  # wait_for_packages PROCESS LOG
 }
 check_format() {
   find engine objectives constraints experiments bindings tests benchmarks -name '*.[ch]pp' -print0 |
-    xargs -0 clang-format-14 --dry-run --Werror
+    xargs -0 -n 50 -P "$(nproc)" clang-format-14 --dry-run --Werror
 }
 
 # What only running tests need (a browser, Octave, Sphinx, a scheduler) is installed while the build runs.

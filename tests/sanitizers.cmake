@@ -72,6 +72,10 @@ set(PKM_TESTS_OF_RELEASE
   HomeColumns.OfSeveralComponentsInSpace HasTheEnergyOfItsTrajectory OfTenThousandPoses PublishedPosesAndSlices
   AreThoseOfSlices/2t1r DerivativesOfRobust GoldenQuinticMoves MarginsHaveTheSameNames LeastNormWithinLimits
   CentreIsTheStationaryPoint CliLargestSolid.HasAGiven OfFewBoxesAreCertified /Version5 /Version6 /Version7
+  LiveProgram.Interrupted ContractedBox.Contains ContractedBox.DoesNot PageData.MotorQuantities PageData.DrivesHave
+  PageData.MotionsInclude Obstacle.Reduces AnyJointWithAClosedForm Solve.Integrates Certify.Tampered
+  FieldsOfAFineGrid Obstacles.AreNamed Orientations.MeasureOfACone OrientationWorkspace.OfACone DeviationBox.IsCertified
+  CliEvaluate.UsesTheBaseline RecordedStudy.Unchanged CliList.ShowsAll ThreadsCanShareAFormula
   ObjectivesAndConstraintsAlongAMotion ReachesTheClosedFormsForALimit NumberOfThreadsFromEnvironment)  # Clang's OpenMP does not survive some of its numbers
 
 # pkm_leave_to_release(SOURCES): takes such files out of a list of sources.
