@@ -1,9 +1,9 @@
 // Feasibility of a motion: every pose along it must satisfy the limits of poses.
 //
 // The margin is the minimum of all pose margins (reach, strokes, distances from singularities, clearance, ...) over the
-// samples of the motion, with the limits of the study. For gradient solvers it is replaced by a smooth lower bound
-// (soft_minimum). Studies have this constraint for every motion that an objective, a constraint or an output uses,
-// unless that [[motion]] has follow = false: forces along a motion that the robot cannot follow are meaningless.
+// samples of the motion, with the limits of the study. For gradient solvers this minimum is replaced by a smooth lower
+// bound (soft_minimum). Studies have this constraint for every motion that an objective, a constraint or an output
+// uses, unless that [[motion]] has follow = false: forces along a motion that the robot cannot follow are meaningless.
 #include <cmath>
 
 #include "constraints/list.hpp"

@@ -16,7 +16,7 @@ inline std::vector<std::size_t> limits_of(const MechanismInfo& mechanism, const 
   return indices;
 }
 
-/// Capability check of a constraint: the mechanism needs a limit of its group.
+/// Capability check of a constraint: the mechanism must have a limit that belongs to the constraint.
 inline auto check_limits(const std::string& constraint) {
   return [constraint](const Mechanism& mechanism) -> Unsupported {
     if (!limits_of(mechanism.info(), constraint).empty()) return {};

@@ -52,13 +52,13 @@ inline Dual4 soft_minimum(const std::vector<Dual4>& margins, double sharpness) {
   return shift - log(sum) / sharpness;
 }
 
-/// Unit of the minimum: the common unit of the margins, or "1" if their units differ.
+/// Unit of the minimum margin: the common unit of the margins, or "1" if their units differ.
 inline std::string unit_of_minimum(const EntryContext& context) {
   const PoseMargins* const margins = context.mechanism.pose_margins();
   return margins && !margins->margin_unit().empty() ? margins->margin_unit() : std::string("1");
 }
 
-/// The reason why the minimum has no derivatives; empty if it has.
+/// The reason why the minimum margin has no derivatives; empty if it has derivatives.
 inline Unsupported no_margin_derivatives(const Mechanism& mechanism, const LimitSpec& limits,
                                          const std::string& constraint) {
   if (mechanism.pose_margins()) return mechanism.pose_margins()->why_no_derivatives(limits);

@@ -2,7 +2,7 @@
 //
 // The constraint value is the minimum of all pose margins (reach, strokes, distances from singularities, ...) over a
 // regular grid of the box, including its faces and vertices, at every value of the fixed coordinates. For gradient
-// solvers it is replaced by a smooth lower bound, whose error is at most ln(number of margins) / sharpness.
+// solvers this minimum is replaced by a smooth lower bound, whose error is at most ln(number of margins) / sharpness.
 #include "constraints/list.hpp"
 #include "constraints/pose_margins.hpp"
 #include "engine/core/catalogue.hpp"

@@ -2,8 +2,8 @@
 // of the motors (torque times speed) if there are drive trains. With recuperation, it is the integral of the total
 // power; without recuperation, it is the integral of the positive powers of the single drives.
 //
-// With `law`, the motion is the fastest one along the same path (cycle_time.cpp), and the rule is applied to the
-// intervals of its nodes.
+// With the option `law`, the motion is the fastest one along the same path (cycle_time.cpp), and the rule is applied to
+// the intervals of its nodes.
 //
 // The value depends on the design only. If the mechanism does not assemble at a sample, the value is NaN and the design
 // `failed`, unless the constraint `motion` has rejected it.

@@ -41,7 +41,7 @@ pkmopt_status store_current_error() noexcept {
     set_error("out of memory");
     return PKMOPT_NO_MEMORY;
   } catch (const std::logic_error& error) {
-    // Analyses refuse what they do not support by std::invalid_argument; other logic errors are bugs.
+    // Analyses throw std::invalid_argument for input that they do not support; other logic errors are bugs.
     const bool is_refusal = dynamic_cast<const std::invalid_argument*>(&error) != nullptr;
     set_error(error.what());
     return is_refusal ? PKMOPT_INVALID_INPUT : PKMOPT_INTERNAL_ERROR;

@@ -57,7 +57,7 @@ T* allocated_array(std::size_t count) {
   return static_cast<T*>(memory);
 }
 
-/// The text of an argument that must not be null.
+/// Returns the text of an argument. Throws ConfigError if `text` is null.
 std::string required_text(const char* text, const char* argument);
 inline std::string text_or_empty(const char* text) { return text ? text : ""; }
 
@@ -69,7 +69,7 @@ void refuse_existing(const std::string& file, bool overwrite);
 class Interrupt {
  public:
   explicit Interrupt(const pkmopt_options& options) : options_(options) {}
-  /// Whether the caller wants to stop.
+  /// Returns true if the caller's function has returned true, i.e. if the caller wants to stop.
   bool is_requested();
 
  private:

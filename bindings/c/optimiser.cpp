@@ -54,7 +54,8 @@ std::vector<Variable> variables_of(std::size_t count, const double* lower, const
 }  // namespace
 }  // namespace pkm::c
 
-/// The caller and the optimiser's thread take turns; whoever has the turn owns all other members.
+/// The caller's thread and the optimiser's thread run alternately: while one waits, the other has exclusive access to
+/// all members.
 struct pkmopt_optimiser final : pkm::Evaluator, pkm::Monitor {
   pkmopt_optimiser(std::vector<pkm::Variable> variables, const int* maximise, std::size_t objectives,
                    std::size_t margins, const std::string& lines, std::uint64_t seed)

@@ -126,7 +126,8 @@ pkmopt_status pkmopt_report(size_t count, const char* const* paths, const char* 
   return guarded([&] {
     const std::string file = required_text(output, "output");
     refuse_existing(file, overwrite != 0);
-    // Throws std::runtime_error now, before any evaluation, if this library was built without the page.
+    // Throws std::runtime_error now, before any evaluation, if this library was built without the files of the HTML
+    // page.
     pkm::page_assets();
     std::vector<pkm::PageStudy> studies;
     for (std::size_t i = 0; i < count; ++i) {

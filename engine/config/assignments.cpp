@@ -47,7 +47,8 @@ std::vector<std::string> list_items(const std::vector<std::string>& lists) {
 
 namespace {
 
-/// The texts after `name=` in comma-separated lists, in the order of `known`.
+/// The texts after `name=` in comma-separated lists, in the order of `known`; std::nullopt for names that are not
+/// given.
 std::vector<std::optional<std::string>> assigned_texts(const std::vector<std::string>& lists, const std::string& option,
                                                        const std::string& form, const std::vector<Assignable>& known) {
   const SourceLocation place = place_of(option);

@@ -14,7 +14,7 @@
 namespace pkm {
 namespace {
 
-/// The accelerators for a mechanism with the given mass model.
+/// Function that returns the accelerators for a built-in mechanism with the given mass model.
 using MakeAccelerators = Accelerators (*)(const std::string& mass_model);
 
 std::shared_ptr<const Mechanism> build(const std::string& name, MakeAccelerators accelerators,

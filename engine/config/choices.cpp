@@ -27,7 +27,7 @@ void add_motors(TomlValue& document, const std::vector<TomlValue>& added) {
   set_key(document, "motor", std::move(motors));
 }
 
-/// A catalogue from the text of its file.
+/// Reads a catalogue for the variable `variable` from the text of the catalogue's file.
 Catalogue read_catalogue(const std::string& variable, SourceText file) {
   const TomlValue document = parse_toml(file.text, file.file_name, "a catalogue in TOML");
   const std::string expected = "a catalogue: one list of tables, for example [[motor]], each with a name";
@@ -87,7 +87,7 @@ void replace_keys(TomlValue& value, const SourceLocation& place, const std::vect
   value.line = line;
 }
 
-/// Replaces the name of a row in its catalogue by its number, from 1.
+/// Replaces a value that is the name of a row of a catalogue by the number of this row, from 1.
 void replace_name(TomlValue& value, const SourceLocation& place, const Catalogue& of) {
   const std::string expected = "one of " + join(of.names);
   if (value.kind != TomlValue::Kind::text) throw ConfigValue(value, place.file, place.key).error(expected);

@@ -27,7 +27,8 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// "a number in [0, 1]", "a number >= 0 s", "any number": a range for messages; `noun` is "a number" or "an integer".
 std::string range_text(std::string_view noun, double lower, double upper, std::string_view unit = "1");
 
-/// What a value has to be, for messages: "an integer in [1, 200]", "one of box, sphere, capsule".
+/// Text for messages that states which values an option accepts: "an integer in [1, 200]", "one of box, sphere,
+/// capsule".
 std::string expectation(const OptionSpec& spec);
 
 /// A value of a TOML file with its position and its description. It refers to a TomlValue that must outlive it. Every
@@ -68,7 +69,7 @@ class ConfigValue {
   const std::string& word(const std::vector<std::string>& choices) const;
   std::vector<ConfigValue> elements(std::string_view expected) const;
 
-  // Tables
+  // Functions for values that are tables:
 
   /// This value as a table described by `spec`. Refuses values that are not tables, and keys that are not described. If
   /// the table has variants, also refuses a missing or unknown TableSpec::choice, and keys of other variants.
@@ -106,13 +107,13 @@ class ConfigValue {
   std::optional<double> find_number(const std::string& key) const;
   std::optional<double> find_number(const std::string& key, std::string_view unit, double lower = -kUnbounded,
                                     double upper = kUnbounded) const;
-  /// Refuses anything but a table.
+  /// Returns this value; throws ConfigError if it is not a table.
   const ConfigValue& expect_table(std::string_view expected = "a table") const;
   /// The value of `key`, which must be one of `choices`. It decides which other keys are allowed, and is therefore read
   /// before these are checked. If it is missing, the message suggests the most similar key that is present.
   const std::string& choice(const std::string& key, const std::vector<std::string>& choices) const;
 
-  /// Throws std::logic_error if the description of this value is not a formula of this unit.
+  /// Throws std::logic_error if the description of this value is not that of a formula with this unit.
   void expect_formula(std::string_view unit) const { spec_as({OptionKind::formula}, unit); }
 
   const TomlValue& toml() const { return *value_; }
@@ -161,7 +162,7 @@ class ConfigValue {
   std::shared_ptr<const Description> table_ = nullptr;  ///< if this value is a table: description of its keys
 };
 
-/// Descriptions of the values under the given names, from TableSpec::named.
+/// One description for each of the given names: a copy of the description TableSpec::named, with this name.
 std::vector<OptionSpec> named_keys(const TableSpec& table, const std::vector<std::string>& names);
 
 /// The options of a catalogue entry, with defaults filled in. Keys that `specs` does not describe are ignored: they

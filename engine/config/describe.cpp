@@ -51,7 +51,7 @@ void write_parameters(std::ostream& out, const Study& study) {
   out << format_titled_table("fixed parameters", fixed);
 }
 
-/// Value of a fixed coordinate.
+/// Text that describes the value of a fixed coordinate.
 std::string fixed_text(const FixedCoordinate& fixed, const std::string& unit) {
   using Kind = FixedCoordinate::Kind;
   if (fixed.kind == Kind::default_value) return "default of each design";

@@ -80,7 +80,7 @@ std::string why_rank_deficient(const MechanismInfo& info, const Eigen::MatrixXd&
   return "it can move along a combination of " + join(undetermined);
 }
 
-/// Text of a computed length or angle.
+/// Text of a computed length or angle with four significant digits, in the unit in which people read it.
 std::string four_digits(double value, const std::string& unit) {
   const DisplayUnit shown = display_unit(unit);
   return formatted("%.4g ", value / shown.size) + shown.name;

@@ -101,8 +101,8 @@ Variable recorded_variable(const StudyDraft& draft, const Variable& of_text, con
   return of_text;
 }
 
-/// Ties the copies of a common parameter that have values of their own in the mechanism file to its variable, unless
-/// they vary or are fixed in the study.
+/// Ties the copies of a common parameter that have values of their own in the mechanism file to the variable of the
+/// common parameter, unless these copies vary or are fixed in the study.
 void tie_copies(const ConfigValue& variables, const std::optional<ConfigValue>& fixed, const ConfigValue& tie,
                 const Variable& variable, std::size_t common, StudyDraft& draft) {
   const auto& known = draft.info().parameters;

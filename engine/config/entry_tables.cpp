@@ -90,7 +90,8 @@ void refuse_unsupported(const ConfigValue& table, const Entry& entry, const Stud
   if (const Unsupported reason = entry.refusal(*draft.parts.mechanism)) throw table.find("type")->refusal(*reason);
 }
 
-/// The statistic over built machines that replaces the value of an entry: that of a yield, or the key `robust`.
+/// The statistic over built machines that replaces the value of an entry: that of the objective `yield`, or the one
+/// that the key `robust` names; std::nullopt if there is none.
 std::optional<SampledValue> sampled_value(const ConfigValue& table, const ObjectiveEntry& entry, const Options& options,
                                           const StudyDraft& draft) {
   using Statistic = SampledValue::Statistic;
@@ -126,7 +127,8 @@ std::string statistic_text(const NamedQuantity& q) {
   return ", value that the share " + shortest(1 - q.sampled->probability) + " of built machines reaches";
 }
 
-/// Makes a quantity from an entry of the catalogue of objectives, and appends it to `entries`, without its role.
+/// Makes a quantity from an entry of the catalogue of objectives, and appends it to `entries`, with an empty
+/// StudyEntry::role.
 NamedQuantity make_objective(const ConfigValue& table, const ObjectiveEntry& entry, std::vector<StudyEntry>& entries,
                              StudyDraft& draft) {
   const Options options = read_options(table, entry.options);

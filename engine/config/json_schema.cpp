@@ -122,6 +122,7 @@ Json schema_of(const OptionSpec& spec) {
   return schema;
 }
 
+/// Schema of a table with the given keys.
 /// @param named  describes the values of all other keys; empty: there are none
 Json object_schema(const std::string& meaning, const std::vector<OptionSpec>& keys,
                    const std::vector<OptionSpec>& named) {
@@ -214,7 +215,7 @@ class StudyTables {
   }
 
   /// The options that a constraint has for any of the mechanisms. If they differ between mechanisms, a mechanism file
-  /// may define further options, and any name is accepted.
+  /// may define further options, and the schema accepts any name of an option.
   TableVariant variant_of(const ConstraintEntry& entry) const {
     TableVariant variant{entry.name, entry.meaning, {}};
     std::vector<std::string> names;
@@ -236,7 +237,7 @@ class StudyTables {
     return variant;
   }
 
-  /// Inserts, before the other keys, the keys that only some constraints have.
+  /// Inserts the keys in `table` that not all constraints have into a variant, before its other keys.
   static void add_keys(const TableSpec& table, TableVariant& variant) {
     std::vector<OptionSpec> keys;
     for (const OptionSpec& key : table.keys)

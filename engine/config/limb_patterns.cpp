@@ -15,7 +15,8 @@ bool matches(std::string_view pattern, std::string_view name) {
   return matches(pattern.substr(1), name) || (!name.empty() && matches(pattern, name.substr(1)));
 }
 
-/// Names the copies that a pattern stands for, except those in `alone`, which are variables themselves.
+/// Names of the copies of a parameter in single limbs that a pattern such as "arm*.l_b" stands for, except the copies
+/// in `alone`, which are variables themselves.
 /// @param copies  all copies of the parameter
 std::vector<std::string> copies_of(const ConfigValue& entry, const LimbParameter& pattern,
                                    const std::vector<LimbParameter>& copies, const std::vector<std::string>& alone) {

@@ -17,10 +17,10 @@ using limbs::Ends, limbs::Term, limbs::Vector3;
 struct ChainForm {
   const char* joints;
   const char* drive;
-  /// For each direction that the chain lists under `axes`, the key of the drive that it becomes; "=": none, because the
-  /// direction has to be parallel to the previous one.
+  /// For each direction in the chain's list `axes`: the key under which the rewritten limb has this direction; "=":
+  /// none, because the direction has to be parallel to the previous one.
   std::vector<const char*> axes;
-  std::vector<const char*> links;  ///< keys of the drive that the lengths under the chain's `links` become
+  std::vector<const char*> links;  ///< for each length in the chain's list `links`: its key in the rewritten limb
 };
 
 const std::vector<ChainForm>& chain_forms() {
@@ -96,8 +96,8 @@ Vector3 rotated(const Vector3& x, const Vector3& n, const Term& angle) {
 /// The plane of the parallel revolute joints of a chain.
 struct Plane {
   Vector3 normal, v;  ///< v: vector from A to B, projected onto the plane
-  /// In the plane: the direction of the base from which the first revolute joint is counted, the links, and, if the
-  /// last joint is a revolute joint, the direction of the platform to which it is counted.
+  /// Directions in the plane: that of the base from which the angle of the first revolute joint is measured; those of
+  /// the links; and, if the last joint is a revolute joint, that of the platform to which its angle is measured.
   std::vector<Vector3> directions;
 };
 
@@ -128,7 +128,8 @@ Plane plane_of(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
   return plane;
 }
 
-/// Loop-closure function for a driven revolute joint: the equation of the link whose angle does not depend on it.
+/// Loop-closure function for a driven revolute joint: the equation of the link whose angle does not depend on this
+/// joint.
 Term closure_of(const LimbCopy& copy, const Plane& plane, const Term& q) {
   const Chain& chain = *copy.chain;
   const Vector3 &n = plane.normal, &v = plane.v, &zero = plane.directions.front();

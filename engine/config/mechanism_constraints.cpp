@@ -26,7 +26,7 @@ struct Screw {
   Vector3 linear, angular;
 };
 
-/// Exception with one sentence: the constraint wrenches are unknown, or there are none.
+/// Thrown, with one sentence as the reason, if the constraint wrenches are unknown or if there are none.
 struct NoConstraints {
   std::string why;
 };

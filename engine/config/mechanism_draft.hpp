@@ -75,7 +75,8 @@ struct LimbPart {
   std::optional<OnArm> on_arm = {};
   /// A link that is an arc of a circle, between two joints whose axes intersect in its centre.
   struct Arc {
-    limbs::Vector3 centre, first, last;  ///< unit vectors from the centre to the two ends
+    /// Centre of the arc; first, last: unit vectors from the centre to the two ends.
+    limbs::Vector3 centre, first, last;
     limbs::Term radius, angle;
   };
   std::optional<Arc> arc = {};
@@ -122,7 +123,8 @@ struct NamedLimb {
 
   /// For a spherical chain of three revolute joints: unit vectors along their axes.
   std::optional<std::array<limbs::Vector3, 3>> axes = {};
-  /// Index in the chain of the driven joint, if it is not the one that `drive` describes.
+  /// Index in the chain of the driven joint, if it is not the joint that `drive` drives (the crank, slider or
+  /// telescope).
   std::optional<std::size_t> driven = {};
   /// True: the last joint of a chain of parallel revolute joints is a spherical joint.
   bool ends_in_ball = false;
@@ -209,7 +211,8 @@ std::vector<LimbParameter> effective_parameters(const MechanismDraft& draft);
 /// Refuses a parameter of a single limb if the limb does not exist, or if no formula of the limb uses the parameter.
 void refuse_idle_parameters(const MechanismDraft& draft);
 
-/// Rotation about a coordinate axis. The elements for numbers such as 90 deg are exactly 0 and 1.
+/// Rotation about a coordinate axis. If the angle is a constant such as 90 deg, elements that should be 0, 1 or -1 are
+/// exactly so.
 limbs::Rotation rotation_by(std::size_t axis, const limbs::Term& angle);
 /// Returns true if a node depends on the coordinates of the pose.
 bool depends_on_pose(const expression::Graph& graph, expression::Node node);

@@ -49,7 +49,8 @@ void read_slider(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draf
       length ? draft.scope.positive(*length, "m", "slider_section") : draft.model.term(draft.model.joints[limb.joint]);
 }
 
-/// Adds the compliance of a cantilever that a unit force bends and stretches at its free end. @return the sum
+/// Returns the sum of `compliance` and the compliance of a cantilever that a unit force bends and stretches at its free
+/// end.
 /// @param along  component of the force along the cantilever
 Term add_cantilever(const Term& compliance, const NamedLimb::Section& section, const Term& length, const Term& along) {
   return compliance + along * along * length / section.EA +

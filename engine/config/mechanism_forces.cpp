@@ -18,7 +18,7 @@ class Loads {
   Loads(const std::optional<ConfigValue>& table, MechanismDraft& draft)
       : table_(table), draft_(draft), model_(draft.model), n_(model_.inputs.coordinates) {}
 
-  /// The sets of loads: one, or one for each end of the range of the payload.
+  /// The sets of loads that the cables have to balance: one set, or one for each end of the range of the payload.
   std::vector<LoadSet> sets() {
     LoadSet common{std::vector<Term>(n_, draft_.zero()), {}};
     if (model_.equations)
@@ -53,7 +53,7 @@ class Loads {
     return {model_.term(v[0]), model_.term(v[1]), model_.term(v[2])};
   }
 
-  /// Adds the external forces and moments to a set. @param key  "force" or "moment"
+  /// Adds external forces or moments to a set of loads. @param key  "force" or "moment"
   void add_components(const char* key, const char* unit, const std::vector<Vector3>& rates, LoadSet& set) {
     const auto given = find(key);
     if (!given) return;
@@ -73,7 +73,7 @@ class Loads {
     add_components("moment", "N m", rotations, set);
   }
 
-  /// The masses at the ends of the payload's range; 0 if there is no payload.
+  /// The smallest and the largest mass of the payload; only the mass 0 if there is no payload.
   std::vector<Term> payloads() {
     const auto at = find("payload_at");
     const auto range = find("payload");
@@ -86,7 +86,8 @@ class Loads {
     return {from, to};
   }
 
-  /// Adds the inertia forces of platform, limbs and payload at rest.
+  /// Adds to a set of loads the inertia forces of platform, limbs and payload for the accelerations in [forces] at zero
+  /// velocity.
   void add_inertia(const Term& payload, LoadSet& set) {
     const auto given = table_ ? table_->find_table("acceleration") : std::nullopt;
     if (!given) return;
@@ -115,7 +116,7 @@ class Loads {
   std::vector<Vector3> payload_rates_;
 };
 
-/// Reads how redundant drives share a load.
+/// Reads the keys of [forces] that determine how redundant drives share a load.
 void read_sharing(const ConfigValue& table, bool has_cables, MechanismDraft& draft) {
   generic::Model& model = draft.model;
   for (const char* const key : {"distribution", "relative_to"})
@@ -151,7 +152,7 @@ void add_reach_of_cables(const std::vector<LoadSet>& loads, bool closure, Mechan
   const auto greater = [](const Term& a, const Term& b) { return call(expression::operation("max"), a, b); };
   const auto magnitude = [](const Term& a) { return call(expression::operation("abs"), a); };
   const Term none = draft.zero();
-  // positive if not all tensions can be 0
+  // The constraint: a value that is positive if not all tensions can be 0.
   Term pull = closure ? Term(model.graph, 1.0) : none;
   for (const NamedLimb& limb : draft.limbs) pull = pull + (*limb.tension)[0];
   for (std::size_t i = 0; i < model.inputs.coordinates; ++i)

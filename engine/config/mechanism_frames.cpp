@@ -202,7 +202,8 @@ void read_frames(const ConfigValue& root, const ConfigValue& platform, Mechanism
                                               kBaseFrame,
                                               std::vector<Vector3>()});
   draft.frame_names = {kBaseFrame, kPlatformFrame};
-  // A dependent translation may use the rotation of the platform, although it is part of the frame's origin.
+  // A dependent translation may use the rotation of the platform, although the translation is part of the origin of the
+  // platform's frame.
   for (const char* const name : {"R", "platform.R"})
     draft.scope.add_predefined(name, [platform, &draft] { return rotation_of_platform(platform, draft); });
   draft.scope.add_predefined(kPlatformFrame, [platform, &draft] { return platform_frame(platform, draft).at; });

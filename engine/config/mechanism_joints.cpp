@@ -56,7 +56,7 @@ class JointReader {
     hold_pin();
     return {solids_, joints_};
   }
-  /// Why forces in the joints cannot be computed although the joints are known; "" if they can.
+  /// The reason why forces in the joints cannot be computed although the joints are known; "" if they can be computed.
   std::string why_no_forces() const {
     if (passive_slide_.empty()) return "";
     return "limb " + passive_slide_ + " has a passive slide, whose reactions are not computed";
@@ -82,7 +82,8 @@ class JointReader {
     const limbs::Rotation& R = frame.at.rotation;
     return {nodes(R[0]), nodes(R[1]), nodes(R[2])};
   }
-  /// Index of the solid with a name; std::nullopt if there is none. Adds the solid of a [[frame]].
+  /// Index of the solid with a name; std::nullopt if there is none. If the name is that of a moving [[frame]] without a
+  /// solid, its solid is added.
   std::optional<std::size_t> find_solid(const std::string& name) {
     const auto frame = draft_.frames.find(name);
     const std::string& body = frame == draft_.frames.end() ? name : frame->second.body;
@@ -269,8 +270,8 @@ class JointReader {
       make_universal(limb, far - near, outer, true);
     }
   }
-  /// Makes the revolute joint added last the drive. Its coordinate is the angle of the joint's second body relative to
-  /// the first.
+  /// Makes the revolute joint that was added last the driven joint. The coordinate of the drive is the angle of the
+  /// joint's second body relative to its first body.
   void drive_last(JointNodes::Drive drive) {
     drive.axis = nodes(vector(drive.axis) * Term(model_.graph, -1.0));
     joints_.back().axes.clear();

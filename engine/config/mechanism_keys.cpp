@@ -32,6 +32,7 @@ const TableSpec& parameter_table() {
   return spec;
 }
 
+/// Description of a table of parameters.
 /// @param header  header of the table in the file: "[parameters]"; "" for the table of the same name in [masses.NAME]
 TableSpec parameters_table(const std::string& header) {
   static const TableSpec limb = {.meaning = "parameters of this limb only",
@@ -47,6 +48,7 @@ TableSpec parameters_table(const std::string& header) {
           .noun = "parameter"};
 }
 
+/// Description of a table of named formulas.
 /// @param header  header of the table in the file: "[let]"; "" for the table of the same name in [masses.NAME]
 TableSpec let_table(const std::string& header) {
   return {.header = header,

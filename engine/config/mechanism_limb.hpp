@@ -22,8 +22,9 @@ struct LimbCopy {
   std::string name;                   ///< name of this copy, for example "arm2"
   limbs::Rotation turn;               ///< rotation that maps the geometry in the file to this copy
   const NamedFrame &base, &platform;  ///< frames to which the two ends of the limb are attached
-  ConfigValue ends;  ///< table that contains the limb's keys `base` and `platform`: the table of the limb, or an
-                     ///< element of `copies`
+  /// Table that contains the limb's keys `base` and `platform`: the table of the limb, or an element of its list
+  /// `copies`.
+  ConfigValue ends;
   const Chain* chain = nullptr;  ///< the chain of joints of a limb with the key `chain`; null for other limbs
 
   limbs::Term length(const char* key, const char* expected) const;
@@ -59,8 +60,8 @@ DrivenLimb read_drive(const LimbCopy& copy, const limbs::Ends& at, const limbs::
 
 /// Names of the parts that a limb with this table and drive has; [[body]] refers to them by these names.
 std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::string& drive);
-/// The parts of a limb with their end points. If the limb has an arm (a crank, or the first of two links), it is added
-/// to the model.
+/// The parts of a limb with their end points. If the limb has an arm (a crank, or the first of two links), the arm is
+/// added to the model.
 std::vector<LimbPart> read_parts(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);
 /// Adds the links of a limb, which are drawn and tested for clearance, if its table has the key `radius`.
 void add_limb_links(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& limb);

@@ -18,7 +18,8 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
                   to = draft.scope.point(table.at("to", "a point"), name);
     const Term radius = draft.scope.positive(table.at("radius", "the link's radius"), "m", name, true);
     std::string part = kFramePart;
-    // Names of the groups of the link; the name of a limb with copies stands for all its copies.
+    // `in`: names of the groups of links with which the link is not tested for clearance. `copies`: for each of these
+    // groups that is a limb with copies, the names of its copies.
     std::vector<std::string> in, copies;
     if (const auto group = table.find("group")) {
       constexpr const char* kExpected = "a name or a list of names";

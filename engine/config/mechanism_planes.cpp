@@ -18,7 +18,7 @@ using generic::Inputs;
 
 // Number of designs, the first of which is the default one, and number of poses per design.
 constexpr std::uint32_t kDesigns = 8, kPoses = 16;
-// Changes of the component of B - A that are smaller, relative to |B - A|, are attributed to rounding.
+// Changes of the component of B - A that are smaller than this, relative to |B - A|, are attributed to rounding.
 constexpr double kConstant = 1e-9;
 
 std::string length_text(double length) {

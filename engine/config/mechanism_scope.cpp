@@ -235,8 +235,8 @@ void MechanismScope::add_domains() {
     const expression::Entry entry = model_.graph[node];
     const Term argument = model_.term(entry.arguments[0]), one(model_.graph, 1.0);
     const bool of_circle = entry.operation->name == "asin" || entry.operation->name == "acos";
-    // A limited quantity may be undefined at a pose at which the mechanism can be assembled; the condition is then a
-    // margin.
+    // A quantity with a limit may be undefined at a pose at which the mechanism can be assembled. The condition that it
+    // is defined is therefore a margin of the pose.
     (is_needed ? model_.domains : model_.margins)
         .push_back({name, "", (of_circle ? one - abs(argument) : argument).node(), consequence});
   }

@@ -70,7 +70,7 @@ class MechanismScope {
   /// Refuses a range that is empty for the default parameters.
   void refuse_empty(const ConfigValue& range, const limbs::Term& from, const limbs::Term& to) const;
 
-  /// Marks the square roots in `node` as defined wherever the constraints of the limb are satisfied; add_domains() then
+  /// Marks the square roots in `node` as defined wherever the constraints of the pose are satisfied; add_domains() then
   /// adds no margins for them.
   void mark_as_defined(expression::Node node);
   /// Adds the conditions that the operations in joints and margins of the model are defined (for example, that
@@ -106,8 +106,8 @@ class MechanismScope {
     std::function<Value()> compute;  ///< empty while the value is being computed
   };
   std::map<std::size_t, Deferred> deferred_;  ///< names without a value so far, by their index in names_
-  std::vector<std::string> origins_;          ///< for each name, the place of its definition, such as "parameters.a
-                                              ///< (line 7)"; "": the name is predefined
+  /// For each name, the place of its definition, such as "parameters.a (line 7)"; "" if the name is predefined.
+  std::vector<std::string> origins_;
   std::vector<PartialOperation> partial_operations_;
   std::unordered_set<expression::Node> visited_;
   bool motion_allowed_ = false;

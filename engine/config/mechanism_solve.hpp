@@ -34,8 +34,8 @@ class SolvedSystems {
     ConfigValue table;
     std::vector<std::string> unknowns;
     std::vector<ConfigValue> at;                     ///< the names of the unknowns in the file
-    std::vector<expression::Node> equations, start;  ///< nodes of draft()
-    std::vector<expression::Node> solution = {};     ///< nodes of the mechanism: the status, then the unknowns
+    std::vector<expression::Node> equations, start;  ///< left sides and start values, as nodes of draft()
+    std::vector<expression::Node> solution = {};  ///< nodes of the mechanism: status of the solution, then the unknowns
     bool is_being_solved = false;
   };
 

@@ -96,6 +96,7 @@ std::vector<TableVariant> motion_variants() {
        {{.name = "duration", .unit = "s", .required = true, .meaning = "duration of the motion", .positive = true}}}};
 }
 
+/// Description of the table of a motion.
 /// @param in_study  true for a [[motion]] of a study, which has a name
 TableSpec motion_table(bool in_study) {
   TableSpec table = {

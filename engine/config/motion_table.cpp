@@ -149,7 +149,7 @@ std::shared_ptr<const Motion> read_pick_and_place(const ConfigValue& table, cons
   return pick_and_place(cycle);
 }
 
-/// A number, text with a unit, or a formula of the time.
+/// Reads the value of a coordinate: a number, text with a unit, or a formula of the time.
 Formula coordinate_formula(const ConfigValue& value, const std::string& unit) {
   if (!value.is_text()) return Formula(shortest(value.number(unit)), time_name());
   const std::string& text = value.text("text");

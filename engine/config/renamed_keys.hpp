@@ -16,7 +16,7 @@ struct RenamedKey {
   TextKind kind;
   /// Path of the old name: {"workspace", "certain"} for the key `certain` of [workspace]; {"report"} for [[report]].
   std::vector<std::string> path;
-  std::string name;  ///< present name
+  std::string name;  ///< present name of the key or table
 };
 std::span<const RenamedKey> renamed_keys();
 

@@ -66,6 +66,7 @@ void check_designs(const ConfigValue& table, const Stage& stage, const DesignSpa
   }
 }
 
+/// Reads one optimiser with its options.
 /// @param each      a table [[stage]]
 /// @param is_first  true if it is the first stage
 Stage read_stage(const ConfigValue& each, const std::vector<OptimiserEntry>& optimisers, const Problem& problem,

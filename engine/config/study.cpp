@@ -233,8 +233,8 @@ Study read_document(StudySource source, const Catalogues& catalogues) {
   return study;
 }
 
-/// Function that returns the recorded text of the mechanism file, instead of reading a file, for a study from a study
-/// file.
+/// For a study that is read from a study file (HDF5): function that returns the text of the mechanism file as recorded
+/// there, instead of reading a file.
 FindFile known_description(const std::optional<SourceText>& description) {
   return [&description](const ConfigValue& file) {
     if (!description) throw file.refusal("the contents of the mechanism file are not available here");
@@ -242,7 +242,8 @@ FindFile known_description(const std::optional<SourceText>& description) {
   };
 }
 
-/// Refuses a catalogue that is not part of the text of a recorded study, which contains all its catalogues.
+/// For a study that is read from a study file (HDF5): refuses to read a catalogue from disk, because the recorded text
+/// contains all catalogues of the study.
 SourceText unknown_catalogue(const ConfigValue& file) {
   throw file.refusal("the contents of the catalogue are not available here");
 }

@@ -54,7 +54,7 @@ struct Reference {
   /// Published value of each variable; std::nullopt where the source gives none.
   std::vector<std::optional<double>> design;
   std::vector<std::pair<std::string, double>> values;  ///< published values of objectives and outputs, by name
-  std::optional<double> seconds;                       ///< published computing time
+  std::optional<double> seconds;                       ///< published computing time [s]
 };
 
 struct Study {
@@ -74,10 +74,13 @@ struct Study {
   std::vector<Stage> stages;                    ///< if empty, the study can be evaluated, but not run
   std::optional<double> round;                  ///< [final]: step [SI] to which the best design is rounded
   std::string round_unit = "1";                 ///< the unit that all variables share; "1" if their units differ
-  double exact_seconds = 10;               ///< [workspace] exact: time limit of the exact values; 0: none are computed
+  /// Time limit [s] for computing the exact values of the best design and the baseline (key `exact` of [workspace]); 0:
+  /// they are not computed.
+  double exact_seconds = 10;
   std::optional<double> checkpoint_every;  ///< interval between checkpoints [s]; std::nullopt: adaptive
   std::vector<std::string> warnings;       ///< sentences for the user about problems that do not prevent a run
-  std::vector<std::string> differences;    ///< differences between the records and the text of a study file
+  /// Differences between the values recorded in a study file and those in its text.
+  std::vector<std::string> differences;
 
   std::vector<Reference> references;
   std::vector<DesignMotion> motions;            ///< motions of the study, from the tables [[motion]]
@@ -125,7 +128,7 @@ void require_stages(const Study& study, const Catalogues& catalogues);
 /// Whether a document is a mechanism file, which has a `name` in [mechanism] or a table [platform].
 bool describes_mechanism(const TomlValue& document);
 
-/// What a file contains: a mechanism or a study.
+/// The content of a file: a mechanism or a study.
 using MechanismOrStudy = std::variant<std::shared_ptr<const Mechanism>, Study>;
 /// Reads a mechanism file or a study at `path`. Throws ConfigError.
 /// @param changes  changes that are applied if the file is a study

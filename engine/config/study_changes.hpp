@@ -15,11 +15,12 @@
 
 namespace pkm {
 
-/// Values of the command line's options: `name=value`, several separated by commas.
+/// Values of command-line options that change a study. Most are lists "name=value,.."; an option can occur several
+/// times.
 struct StudyChanges {
-  std::vector<std::string> set;         ///< fixed parameters
-  std::vector<std::string> limit;       ///< thresholds of poses
-  std::vector<std::string> cells;       ///< numbers of voxels by coordinate, or one number for all coordinates
+  std::vector<std::string> set;    ///< values of fixed parameters (--set)
+  std::vector<std::string> limit;  ///< thresholds of limits on poses (--limit)
+  std::vector<std::string> cells;  ///< numbers of voxels by coordinate, or one number for all coordinates (--cells)
   std::vector<std::string> start_from;  ///< name of the study file whose designs the first stage starts from
   /// Designs from which the first stage starts, one list "name=value,.." each (engine/runner/start_from.hpp).
   std::vector<std::string> start;
@@ -27,7 +28,7 @@ struct StudyChanges {
   /// Parameters of single limbs, such as "arm2.l_b", that the mechanism must have in addition to those that the study
   /// names. They do not change the study.
   std::vector<std::string> limb_parameters;
-  std::vector<std::string> joint_error;  ///< [accuracy] joint_error of a mechanism without a study
+  std::vector<std::string> joint_error;  ///< bounds of joint errors (--joint-error), for a mechanism without a study
   std::optional<std::int64_t> machines;  ///< number of samples of [tolerance]; does not change the text of the study
 
   /// Values of parameters and bounds of variables recorded in a study file. They replace the values given by the

@@ -34,11 +34,11 @@ struct StudyDraft {
 
 /// Reads the tables [[override]]: changes by the command line.
 void read_overrides(const ConfigValue& root, StudyDraft& draft);
-/// Applies the overrides of fixed parameters.
+/// Applies the changes of fixed parameters by [[override]] tables and by the command line.
 void override_parameters(const ConfigValue& root, StudyDraft& draft);
-/// Applies the overrides of limits.
+/// Applies the changes of limits on poses by [[override]] tables and by the command line.
 void override_limits(StudyDraft& draft);
-/// Reads the designs of another study from which the first stage starts.
+/// Reads the designs in [[override]] tables and on the command line from which the first stage starts.
 void override_starts(StudyDraft& draft);
 /// Reads [mechanism]: type or file, masses, fixed parameters.
 void read_mechanism(const ConfigValue& root, StudyDraft& draft);
@@ -63,8 +63,8 @@ void read_obstacles(const ConfigValue& root, StudyDraft& draft);
 void read_regions(const ConfigValue& root, StudyDraft& draft);
 /// Reads the tables [[motion]].
 void read_motions(const ConfigValue& root, StudyDraft& draft);
-/// Reads [[objective]], [[output]] and the [[constraint]]s that do not limit poses, and adds the constraints that their
-/// motions imply.
+/// Reads [[objective]], [[output]] and the [[constraint]]s that do not limit poses, and adds the constraints that the
+/// motions used by them imply.
 void read_quantities(const ConfigValue& root, StudyDraft& draft);
 /// Reads [tolerance], and adds the built machines to the problem if a quantity is a statistic over them. Called after
 /// all other tables of the problem have been read.

@@ -1,4 +1,4 @@
-// Names of tables of a TOML document, for the readers of studies and of mechanism files.
+// Reads the unique names of tables of a TOML document, for the readers of studies and of mechanism files.
 #pragma once
 
 #include <string>

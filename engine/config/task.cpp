@@ -288,7 +288,8 @@ std::string sentence_of(const ConfigError& error, const std::string& mechanism) 
 void evaluate(const TaskRobot& robot, const Names& names, TaskEvaluation& task) {
   const DesignProblem& problem = *task.study.problem;
   const DesignReport report = problem.report(robot.parameters);
-  // Over a region without feasible poses, a statistic has the quantity's value for undefined poses.
+  // In a region without feasible poses, a statistic is not available, although the analysis gives it the value that its
+  // quantity has where it is undefined.
   Names empty;
   const std::vector<Region>& regions = problem.parts().regions;
   for (std::size_t k = 0; k < regions.size(); ++k)

@@ -33,8 +33,9 @@ struct TaskRobot {
   std::string name;  ///< unique name of the robot, to which [origin] refers
   std::shared_ptr<const Mechanism> mechanism;
   std::vector<double> parameters;
-  TomlValue study;                        ///< document of its study; without a study, only the table [mechanism]
-  std::optional<SourceText> description;  ///< text of its mechanism file; std::nullopt: the mechanism is built in
+  TomlValue study;  ///< document of the robot's study; if it has no study, only the table [mechanism]
+  /// Text of the robot's mechanism file; std::nullopt: the mechanism is built in.
+  std::optional<SourceText> description;
 };
 
 /// One line of a comparison.
@@ -47,15 +48,14 @@ struct TaskValue {
   std::optional<double> required = {};
   double value = std::numeric_limits<double>::quiet_NaN();  ///< the value; NaN: it is not available
   std::string reason = {};                                  ///< reason why the value is not available; "" if it is
-  std::string limited_by = {};                              ///< name of the limit that determines the value; "" if it
-                                                            ///< is unknown
-  bool is_users = false;                                    ///< true for an [[output]] of the task
-  bool is_mistake = false;  ///< an [[output]] of the task that the robot refuses; a mistake if all robots refuse it
+  std::string limited_by = {};  ///< name of the limit that determines the value; "" if it is unknown
+  bool is_users = false;        ///< true for an [[output]] of the task
+  bool is_mistake = false;      ///< an [[output]] of the task that the robot refuses; a mistake if all robots refuse it
 };
 
 /// A robot in a task.
 struct TaskEvaluation {
-  Study study;                 ///< the task as a study of the robot, in its frame
+  Study study;                 ///< the task as a study of the robot, in the frame of the robot's base
   std::vector<double> origin;  ///< position of the robot's base in the frame of the task, by coordinate
   std::vector<TaskValue> values;
   Unsupported why_no_drives = {};  ///< reason why the robot cannot have the drive trains of the task; empty if it can

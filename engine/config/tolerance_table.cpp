@@ -102,7 +102,8 @@ std::vector<LimbParameter> find_copies(const std::vector<Tolerance>& tolerances,
   if (description && !common.empty())
     copies = limb_copies(description->text, description->file_name, common, draft.limb_parameters);
   if (!draft.study.description) {
-    // A built-in mechanism may describe several limbs by the formulas of one; its only copy would not be a real part.
+    // A built-in mechanism may describe several limbs by the formulas of one limb. A parameter with a single copy is
+    // therefore not a dimension of one real part, and has no independent errors.
     const auto all = copies;
     std::erase_if(copies, [&all](const LimbParameter& copy) {
       return std::ranges::count(all, copy.parameter, &LimbParameter::parameter) < 2;

@@ -132,7 +132,7 @@ int line_too_deep(std::string_view text) {
       } else if (text[i] == quote && !long_one) {
         return i;
       } else if (long_one && text.substr(i).starts_with(std::string(3, quote))) {
-        // Up to two quotes of the text may precede the closing quotes.
+        // In a multi-line string, up to two quotes that belong to the text may precede the closing quotes.
         while (i + 3 < text.size() && text[i + 3] == quote) ++i;
         return i + 2;
       }

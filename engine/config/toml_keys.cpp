@@ -89,7 +89,7 @@ class KeyScanner {
         return;
       } else if (multi_line && text_.substr(at_).starts_with(three)) {
         at_ += 3;
-        // Up to two quotes of the text may precede the closing quotes.
+        // In a multi-line string, up to two quotes that belong to the text may precede the closing quotes.
         for (int quotes = 0; quotes < 2 && peek() == quote; ++quotes) ++at_;
         return;
       }

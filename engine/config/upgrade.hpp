@@ -12,7 +12,7 @@ namespace pkm {
 struct ReplacedKey {
   int line = 0;          ///< number of the line, from 1
   std::string old_path;  ///< path of the replaced key, for example "workspace.certain"
-  std::string name;      ///< present name of this key, for example "certified"
+  std::string name;      ///< present name of the replaced key, for example "certified"
 };
 
 struct UpgradedText {

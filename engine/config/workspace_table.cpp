@@ -16,11 +16,11 @@ namespace pkm {
 namespace {
 
 constexpr std::array<std::int64_t, 3> kPaperCells{32, 34, 60};  // default grid, taken from the 4PPa-2PaR paper
-constexpr std::int64_t kIntegratedCells = 32;                   // default number of cells along a coordinate that is
-                                                                // integrated over
-constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;       // maximum total number of cells; a voxel map takes one
-                                                                // byte per cell
-constexpr double kDefaultGap = 1e-2;                            // relative gap of the bounds for `certified = true`
+// Default number of cells along a coordinate that is integrated over.
+constexpr std::int64_t kIntegratedCells = 32;
+// Maximum total number of cells; a voxel map takes one byte per cell.
+constexpr std::int64_t kMaxCells = std::int64_t{1} << 28;
+constexpr double kDefaultGap = 1e-2;  // relative gap of the bounds for `certified = true`
 
 bool integrated(const FixedCoordinate& fixed) { return fixed.kind == FixedCoordinate::Kind::integrated; }
 

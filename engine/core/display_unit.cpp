@@ -8,10 +8,11 @@
 namespace pkm {
 namespace {
 
-/// The display units of an SI unit, in decreasing order of the magnitudes from which on they are used.
+/// A unit in which people read values of the SI unit `si_unit`. For one SI unit, units are listed in decreasing order
+/// of `from`.
 struct UnitChoice {
   std::string_view si_unit;
-  double from;  ///< magnitude in SI
+  double from;  ///< smallest magnitude [SI] for which this unit is used
   double size;
   std::string_view name;
 };

@@ -18,7 +18,7 @@ DisplayUnit display_unit(std::string_view si_unit);
 /// "kN". Values that are printed in one unit, such as those of a table row, share the unit of the largest.
 DisplayUnit display_unit(std::string_view si_unit, double magnitude);
 
-/// A text followed by the name of its unit, if it has one.
+/// A text followed by a space and the name of the unit, if the unit has a name.
 std::string with_name(const std::string& text, const DisplayUnit& unit);
 /// Formats a given value, which is not rounded, in its display unit: "200 mm", "75 deg", "2 kg".
 std::string display_text(double value, std::string_view si_unit);

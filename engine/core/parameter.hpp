@@ -9,12 +9,12 @@ namespace pkm {
 
 /// A parameter of a mechanism. The mechanism defines the order of its parameters.
 struct Parameter {
-  std::string name;     ///< symbol in the document of the mechanism, with "_" before an index, for example "l_u"
+  std::string name;     ///< name as in the mechanism file, with "_" before an index, for example "l_u"
   std::string unit;     ///< SI unit: "m", "rad", "kg", ... or "1"
   double nominal = 0;   ///< default value
   double lower = 0;     ///< minimum; the model is defined on [lower, upper]
   double upper = 0;     ///< maximum
-  std::string meaning;  ///< one-line description
+  std::string meaning;  ///< one-line description of the parameter
 };
 
 /// A design variable of a study.

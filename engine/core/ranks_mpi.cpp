@@ -304,7 +304,8 @@ std::string library() {
   int length = 0;
   MPI_Get_library_version(text, &length);
   const std::string version(text, static_cast<std::size_t>(length));
-  // The text is, for example, "Open MPI v4.1.4, package: .." or "MPICH Version:\t4.0.2\nMPICH Release date: ..".
+  // The text of the MPI library's version is, for example, "Open MPI v4.1.4, package: .." or "MPICH
+  // Version:\t4.0.2\nMPICH Release date: ..".
   return version.substr(0, version.find_first_of(",\n"));
 }
 

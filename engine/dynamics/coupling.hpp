@@ -38,12 +38,13 @@ Matrix<S, 4, 4> matrix_of(const JointInertia<S>& elements) {
   return M;
 }
 
-/// Unit eigenvectors of the smallest and of the largest eigenvalue of a symmetric matrix; undefined if an element is
-/// not finite.
+/// Unit eigenvectors of the smallest and of the largest eigenvalue of a symmetric matrix.
 struct ExtremeEigenvectors {
   static constexpr std::size_t kMax = 8;  ///< maximum number of rows of the matrix
   std::array<double, kMax> smallest{}, largest{};
 };
+/// Finds the unit eigenvectors of the smallest and of the largest eigenvalue of a symmetric matrix; std::nullopt if an
+/// element is not finite.
 /// @param elements n x n, row-major; n at most ExtremeEigenvectors::kMax
 std::optional<ExtremeEigenvectors> extreme_eigenvectors(std::span<const double> elements, std::size_t n);
 

@@ -50,8 +50,9 @@ struct JointLoad {
 struct MotorFit {
   /// Peak torque [N m], root-mean-square torque [N m] and motor speed [rad/s] that the motion requires.
   double peak_torque = 0, rms_torque = 0, speed = 0;
-  double reserve = 0;      ///< minimum ratio of a rating to the demand; the motor is sufficient if it is >= 1
-  std::string bounded_by;  ///< rating that has this minimum ratio: "peak torque", "continuous torque" or "speed"
+  double reserve = 0;  ///< minimum ratio of a rating to the demand; the motor is sufficient if it is >= 1
+  /// Rating whose ratio to the demand is smallest: "peak torque", "continuous torque" or "speed".
+  std::string bounded_by;
 };
 
 /// Compares the demand of a motion with the ratings of a motor.

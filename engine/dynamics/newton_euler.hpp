@@ -28,8 +28,8 @@ namespace pkm {
 struct Actuator {
   std::size_t joint;       ///< index of the actuated joint in MechanismInfo::joints
   Vector<double, 3> axis;  ///< direction of a positive drive force, unit vector
-  /// Additional drive force [N] for a slider between the actuator and the joint that is not modelled as a body: the
-  /// mass of the slider times (acceleration - g) along the axis.
+  /// Drive force [N] in addition to the force at the joint, if a slider between the actuator and the joint is not
+  /// modelled as a body: the mass of the slider times (acceleration - g) along the axis.
   double on_slide = 0;
   bool turns = false;  ///< true: a rotary actuator, which exerts a couple; false: a linear one, which exerts a force
 };

@@ -21,7 +21,7 @@ namespace pkm {
 struct SimulationState {
   double time = 0;  ///< time since the start [s]
   AxisVector<double> pose, velocity, acceleration;
-  double kinetic_energy = 0;  ///< kinetic energy at this time [J]
+  double kinetic_energy = 0;  ///< kinetic energy of the mechanism at `time` [J]
   /// Work done since the start by the drives, the weight and the wrench [J].
   double work_of_drives = 0, work_of_weight = 0, work_of_wrench = 0;
   double work_of_friction = 0;  ///< work done by friction since the start, <= 0 [J]
@@ -46,7 +46,7 @@ struct SimulationSetup {
 struct Simulation {
   std::vector<SimulationState> states;  ///< the initial state and the state after every step
   std::string stopped;                  ///< the reason if the simulation stopped early, one sentence; "" if it did not
-  double imbalance = 0;    ///< maximum difference between the change of the kinetic energy and the work [J]
+  double imbalance = 0;    ///< maximum difference between the change of the kinetic energy and the work done [J]
   double turned_over = 0;  ///< initial kinetic energy plus the sum of |work| of all steps [J]
 };
 

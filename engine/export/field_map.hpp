@@ -39,7 +39,7 @@ struct FieldRegion {
 
 struct FieldMap {
   FieldRegion defined;    ///< region in which the field is defined; it has no contour lines
-  FieldRegion undefined;  ///< the rest of the mesh; it has no contour lines
+  FieldRegion undefined;  ///< region of the mesh in which the field is undefined; it has no contour lines
   /// One region for each threshold, ascending; each region contains those of all higher thresholds.
   std::vector<FieldRegion> regions;
 };

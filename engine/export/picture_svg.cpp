@@ -46,7 +46,7 @@ std::string path_data(const std::vector<SliceOutline::Loop>& loops) {
   return data;
 }
 
-/// An attribute whose default value is 1; "" for this value.
+/// Text of an XML attribute; "" if the value is 1, which is the default of these attributes.
 std::string attribute(const std::string& name, double value) {
   return value == 1 ? "" : " " + name + "=\"" + formatted("%.4g", value) + "\"";
 }

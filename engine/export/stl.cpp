@@ -33,7 +33,7 @@ std::string stl_file(const Isosurface& surface, const std::string& title) {
     facets.append(2, '\0');  // number of attribute bytes of the triangle: 0
     ++count;
   }
-  // The text must not begin with "solid", which would mark an ASCII file.
+  // The header of 80 bytes must not begin with "solid", which would mark an ASCII file.
   std::string bytes = ("pkmopt " + title).substr(0, 80);
   bytes.resize(80, ' ');
   append(bytes, count);

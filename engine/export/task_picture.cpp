@@ -280,7 +280,8 @@ class ComparisonDrawing {
       for (const Curve& each : panels[k]) {
         const std::vector<double>& values = each.curve->values;
         std::vector<PlanePoint> points;
-        // Called where the values of a curve are undefined, so that the curve has a gap there.
+        // Draws the part of a curve up to here. Called at the end of the curve, and where its values are undefined, so
+        // that it has a gap there.
         const auto end_line = [&] {
           if (points.size() > 1) picture_.lines.push_back({points, robot_colour(each.robot), 1.8});
           points.clear();
@@ -304,7 +305,8 @@ class ComparisonDrawing {
   std::vector<std::vector<SliceOutline::Loop>> outlines_;  ///< outlines of the workspaces, by view, then by robot
   std::vector<Range> ranges_;                              ///< drawn range of each axis
   Picture picture_;
-  double top_ = 0, right_ = 0;  ///< top_: y below everything that has been drawn; right_: x of its right end [pixel]
+  /// top_: y below everything that has been drawn; right_: x of the right end of the drawing [pixel].
+  double top_ = 0, right_ = 0;
 };
 
 }  // namespace

@@ -42,8 +42,8 @@ struct ParentJoint {
   Position point;
 };
 
-/// Groups the links of the mechanism into links of the tree: the frame is the first one; all links of the platform form
-/// a single one.
+/// Groups the links of the mechanism into links of the tree: the first one consists of the links that do not move (the
+/// frame), another one of all links of the platform.
 std::vector<TreeLink> tree_links(const std::vector<PlacedLink>& links) {
   std::vector<TreeLink> found = {{kFramePart}};
   for (const PlacedLink& link : links) {
@@ -56,7 +56,7 @@ std::vector<TreeLink> tree_links(const std::vector<PlacedLink>& links) {
   return found;
 }
 
-/// An end of a capsule. It is stationary if it has the same position at the second pose.
+/// An end of a capsule. It is stationary if its position is the same at both poses for which the links are given.
 struct End {
   Position point;
   bool is_stationary;

@@ -42,7 +42,7 @@ struct Operand {
 struct BatchSolve {
   std::shared_ptr<const ImplicitSystem> system;
   std::vector<Operand> from;
-  std::vector<std::uint32_t> to;  ///< slots of the rows of the status and the unknowns
+  std::vector<std::uint32_t> to;  ///< slots of the rows that receive the status and the unknowns
 };
 /// Solves the system for each of `count` values, one after the other.
 void solve_batch(const BatchSolve& step, const double* registers, double* rows, std::size_t count);

@@ -34,7 +34,8 @@ struct VectorFunction {
   std::string name;
   std::vector<std::string> arguments;  ///< kinds of the arguments: "a vector"
   FormulaValue (*apply)(std::span<const FormulaValue> arguments);
-  /// The vector whose norm the value contains: a square root that exists for all arguments; null if there is none.
+  /// Returns the vector whose norm the function computes, a square root that exists for all arguments; null: the
+  /// function computes no norm.
   Vector3 (*normed)(std::span<const FormulaValue> arguments) = nullptr;
 };
 const std::vector<VectorFunction>& vector_functions();

@@ -43,8 +43,9 @@ struct Entry {
   std::array<Node, kMaxArguments> arguments{};
   std::uint8_t count = 0;   ///< number of arguments
   std::int32_t input = -1;  ///< index of the node among the inputs of the graph; -1 if the node is not an input
-  double number = 0;        ///< value if the node is a constant; index of the unknown if it is one
-  Groups groups = 0;        ///< groups of all inputs that the node depends on, directly or through its arguments
+  /// Value of a constant; for a node that is an unknown of a system of equations, index of the unknown.
+  double number = 0;
+  Groups groups = 0;  ///< groups of all inputs that the node depends on, directly or through its arguments
   const Solution* solution = nullptr;  ///< the system that the node solves, if its operation is solving()
 
   bool is_number() const { return !operation && input < 0; }

@@ -23,7 +23,7 @@ struct ImplicitSystem::Factors {
   std::size_t n;
   std::array<Vector, kMaxUnknowns> a;
   std::array<std::size_t, kMaxUnknowns> row;
-  bool is_negative;  ///< sign of the determinant
+  bool is_negative;  ///< true if the determinant of the Jacobian is negative
 
   /// Factors the Jacobian of a linearisation. @return false if it is singular or not finite
   template <class Element>
@@ -51,7 +51,7 @@ struct ImplicitSystem::Factors {
     }
     return true;
   }
-  /// J^-1 b
+  /// Returns J^-1 b, where J is the Jacobian that was factored last.
   Vector solve(const Vector& b) const {
     Vector x{};
     for (std::size_t i = 0; i < n; ++i) {
@@ -64,7 +64,7 @@ struct ImplicitSystem::Factors {
     }
     return x;
   }
-  /// J^-T b
+  /// Returns J^-T b, where J is the Jacobian that was factored last.
   Vector solve_transposed(Vector b) const {
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < i; ++j) b[i] -= a[j][i] * b[j];
@@ -109,7 +109,8 @@ class ImplicitSystem::Newton {
     return factors.factor(
         [&](std::size_t i, std::size_t j) { return registers_[system_.linearisation_.outputs()[n + i * n + j]]; });
   }
-  /// Newton's method from a start. @return false if it does not converge, or converges to another branch
+  /// Newton's method from the start u, which is replaced by the solution. @return false if it does not converge, or
+  /// converges to another branch
   bool solve(Vector& u) {
     constexpr int kMaxSteps = 30;
     // Step length (of unknowns above 1, relative to them) below which the quadratic convergence makes one further step
@@ -193,8 +194,8 @@ void ImplicitSystem::solve(std::span<const double> operands, std::span<double> r
 
 namespace {
 
-// The derivatives that a scalar carries, by index, and the number of chord steps after which they are exact: one per
-// order of differentiation.
+// parts_of(): number of derivatives that a scalar carries; the functions after it read and change them by index.
+// kOrders: number of chord steps after which these derivatives are exact, one per order of differentiation.
 constexpr int parts_of(const Dual4&) { return 4; }
 constexpr int parts_of(const Taylor&) { return 2; }
 double derivative_part(const Dual4& x, int i) { return x.v[i]; }
@@ -297,8 +298,8 @@ class ImplicitSystem::Krawczyk {
                    operands.begin() + static_cast<std::ptrdiff_t>(system.coefficients_));
   }
 
-  /// True if it is certain that the system has no solution for any coefficients: an equation does not vanish for any
-  /// values of the unknowns. (Sines and cosines of unbounded angles are bounded.)
+  /// True if it is certain that the system has no solution for any coefficients: one of the equations is violated for
+  /// all values of the unknowns. (Sines and cosines of unbounded angles are bounded.)
   bool excludes_solutions() {
     Box all;
     all.fill(Interval::everything(Decoration::continuous));
@@ -306,7 +307,9 @@ class ImplicitSystem::Krawczyk {
     return std::ranges::any_of(system_.residuals_.outputs(),
                                [&](std::uint32_t output) { return f[output].lower > 0 || f[output].upper < 0; });
   }
-  /// @param results  receives enclosures of the unknowns. @return false if the test proves nothing
+  /// Finds enclosures of the unknowns by Krawczyk's test.
+  /// @param results  receives the enclosures
+  /// @return false if the test proves nothing
   bool enclose(std::span<Interval> results) {
     std::vector<double> solution(1 + n_);
     system_.solve(middle_, std::span<double>(solution));
@@ -359,7 +362,8 @@ class ImplicitSystem::Krawczyk {
     for (std::size_t i = 0; i < n_; ++i) box[i] = Interval(at_.u[i]) + ball(w[i]);
     return box;
   }
-  /// Encloses Y f(u). @return false if it is not known to be continuous and finite
+  /// Encloses Y f(u), where Y is the inverse of the Jacobian at the approximate solution u. @return false if it is not
+  /// known to be continuous and finite
   bool step(Box& Yf) {
     const std::vector<Interval>& f = run(system_.residuals_, around({}));
     for (std::size_t i = 0; i < n_; ++i) {
@@ -395,7 +399,8 @@ class ImplicitSystem::Krawczyk {
     for (std::size_t j = 0; j < n_; ++j) sum = sum + at_.C[i][j] * ball(w[j]);
     return sum;
   }
-  /// Bounds the components of (I - C)^-1 x for |x| <= b, by a d with b + |C| d < d. @return false if none is found
+  /// Bounds the components of (I - C)^-1 x for |x| <= b, where C = I - Y J, by a d with b + |C| d < d. @return false if
+  /// none is found
   bool bound_inverse(const Vector& b, Vector& d) const {
     d = b;
     for (int trial = 0; trial < 20; ++trial) {
@@ -482,7 +487,7 @@ class ImplicitSystem::Krawczyk {
                 std::max(bounds[1], magnitude(change[i]) / std::max(1.0, mignitude(box[i])) * (1 + 1e-15))};
     return bounds;
   }
-  /// Encloses (I - C)^-1 x. @return false if it is not bounded
+  /// Replaces x by an enclosure of (I - C)^-1 x, where C = I - Y J. @return false if it is not bounded
   bool apply_inverse(Box& x) const {
     Vector b{}, d{};
     for (std::size_t i = 0; i < n_; ++i) b[i] = magnitude(x[i]);
@@ -527,7 +532,7 @@ class ImplicitSystem::Krawczyk {
   const ImplicitSystem& system_;
   const std::size_t n_;
   std::span<const Interval> operands_;
-  std::vector<double> middle_;  ///< midpoints of the operands
+  std::vector<double> middle_;  ///< midpoints of the intervals of the operands
   std::vector<Interval> inputs_, registers_;
   Linearisation at_;
 };

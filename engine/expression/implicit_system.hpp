@@ -31,8 +31,8 @@ class ImplicitSystem {
 
   /// Solves the system. S is double, Dual4, Taylor or Interval; the values of the first three have the same bits.
   /// @param results  receives the status, which is 1 if the system is solved and otherwise -1, and the unknowns, which
-  ///                 are NaN if it is not solved. Intervals: if the test proves nothing, the status is [-1, 1] and the
-  ///                 unknowns are unbounded
+  ///                 are NaN if it is not solved. Intervals: if Krawczyk's test proves nothing, the status is [-1, 1]
+  ///                 and the unknowns are unbounded
   void solve(std::span<const double> operands, std::span<double> results) const;
   void solve(std::span<const Dual4> operands, std::span<Dual4> results) const;
   void solve(std::span<const Taylor> operands, std::span<Taylor> results) const;

@@ -28,7 +28,7 @@ using Rule = S (*)(const S* x, std::size_t count);
 inline constexpr std::size_t kMaxArguments = 3;  ///< maximum number of arguments of an operation in a graph
 
 struct Operation {
-  std::string name;           ///< as written in formulas
+  std::string name;           ///< name of the operation as written in formulas
   std::size_t arguments = 1;  ///< number of arguments; 0: two or more (min, max), which a graph nests from the left
   std::tuple<Rule<double>, Rule<Dual4>, Rule<Taylor>, Rule<Interval>> rules;
   int rank = 0;  ///< precedence of an operator, where a higher one binds more tightly; 0 for a function

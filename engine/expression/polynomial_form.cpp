@@ -81,7 +81,7 @@ class NormalForm {
  private:
   using Clauses = std::optional<std::vector<Clause>>;
 
-  /// The operands of a node whose radical forms combine_forms() needs to find that of the node.
+  /// Those operands of a node whose radical forms combine_forms() needs to find the radical form of the node.
   std::vector<Node> operands_of_form(Node node) const {
     const Entry& entry = graph_[node];
     if ((entry.groups & z_) == 0 || !entry.operation) return {};
@@ -239,7 +239,7 @@ class NormalForm {
     return true;
   }
 
-  /// -f; if f is a negation, or a product or quotient with a negative number, without that sign.
+  /// Returns -f; if f is a negation, or a product or quotient with a negative number, this is f without the minus sign.
   Node negated_factor(Node f) const {
     const Entry entry = graph_[f];
     const Code code = entry.operation ? entry.operation->code : Code::other;

@@ -83,7 +83,7 @@ class Program {
   /// Runs a stage whose inputs are in their registers already.
   template <class S>
   void run(std::size_t stage, std::span<S> registers) const;
-  /// Runs start() and all stages.
+  /// Runs the whole program: start(), followed by all stages.
   template <class S>
   void run_all(std::span<const S> inputs, std::span<S> registers) const {
     start<S>(registers);

@@ -13,7 +13,7 @@ namespace pkm::expression {
 
 class TermMatrix {
  public:
-  /// A matrix of zeros.
+  /// Makes a matrix of the given size whose elements are 0.
   TermMatrix(Graph& graph, std::size_t rows, std::size_t columns)
       : rows_(rows), columns_(columns), elements_(rows * columns, Term(graph, 0.0)) {}
 

@@ -20,7 +20,8 @@ PoseCertificate certify_motion(const Evaluation& evaluation, std::span<const dou
                                const LimitSpec& limits, std::size_t mode, const Motion& motion,
                                const BoundsOptions& options);
 
-/// Tries to prove that no path leads from one pose to another, see RigorousBounds::separate().
+/// Tries to prove that every path from one pose to another leaves the limits, the box or the working mode, or crosses a
+/// singularity (RigorousBounds::separate()).
 Separation separate_poses(const Evaluation& evaluation, std::span<const double> parameters, const WorkspacePlan& plan,
                           std::size_t mode, const Pose<double>& from, const Pose<double>& to,
                           const BoundsOptions& options);

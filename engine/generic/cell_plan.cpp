@@ -46,7 +46,7 @@ Shape shape_of(const expression::Graph& graph, Node leading) {
 }
 
 /// Removes clauses that are implied by others, merges clauses that differ in the constant coefficient only, and moves
-/// those that do not depend on z to `plain`.
+/// those that do not depend on the innermost coordinate to `plain`.
 void simplify(expression::Graph& graph, std::vector<expression::Clause>& clauses, std::vector<Node>& plain) {
   const Node zero = graph.number(0);
   std::vector<expression::Polynomial> single;
@@ -72,8 +72,8 @@ void simplify(expression::Graph& graph, std::vector<expression::Clause>& clauses
   }
 }
 
-/// The quadratics in z that decide whether the angle of a crank is in its range; std::nullopt if quadratics do not
-/// decide it.
+/// The quadratics in the innermost coordinate z that decide whether the angle of a crank is in its range; std::nullopt
+/// if quadratics do not decide it.
 std::optional<Surfaces> surfaces_of(expression::Graph& graph, const CrankRangeNodes& crank, Groups z) {
   if ((graph[crank.reach].groups & z) == 0 || (graph[crank.half_turn].groups & ~Inputs::kDesign) != 0 ||
       !graph[crank.branch].is_number())
@@ -124,8 +124,8 @@ std::array<Groups, 4> groups_of(const std::vector<int>& swept, const std::vector
   return groups;
 }
 
-/// Merges a clause of two constraints, of which one does not depend on z, into a single ColumnConstraint, whose
-/// alternative is the constraint that does not depend on z. Other clauses are returned unchanged.
+/// Merges a clause of two constraints, of which one does not depend on the innermost coordinate, into a single
+/// ColumnConstraint, whose alternative is this constraint. Other clauses are returned unchanged.
 /// @param all  the constraints of the clause, one per polynomial
 CellPlan::Disjunction merge_constant(const expression::Clause& clause, CellPlan::Disjunction all, Node zero) {
   if (clause.size() != 2) return all;

@@ -193,7 +193,8 @@ void CellTest::find_crank_bits(std::size_t i, const ColumnGrid& column_grid, std
   for (std::size_t k = 0; k < in.size(); ++k) {
     const std::uint64_t f1 = scratch.at_min[k], f2 = scratch.at_max[k];
     const std::uint64_t p1 = scratch.after_min[k], p2 = scratch.before_max[k];
-    // bit sets of the cells in which the angle phi, or phi + pi, is in the range of the crank (see limbs::CrankRange)
+    // Bit sets of the cells in which phi, the mean of the two crank angles at which the limb assembles, or phi + pi is
+    // in the range of the crank (limbs::CrankRange).
     const std::uint64_t phi = is_half ? p1 & p2 : p1 | p2, opposite = is_half ? ~p1 & ~p2 : ~p1 | ~p2;
     in[k] = crank.is_first ? f1 & ~f2 : ~f1 & f2;
     if_reached[k] = (f1 & f2 & phi) | (~f1 & ~f2 & opposite);

@@ -8,7 +8,7 @@ bool contract(const ColumnConstraint& constraint, const double* registers, const
               std::size_t count, CellRanges& ranges) {
   using L = LanesOf<set>;
   const auto& [shape, c, has_alternative, alternative] = constraint;
-  // If the alternative is the same for all columns and satisfied, the ranges remain unchanged.
+  // If the alternative constraint has one value for all columns and is satisfied, the ranges of cells remain unchanged.
   if (has_alternative && !alternative.row && registers[alternative.index] >= 0) return false;
   const bool may_have_holes = shape == Shape::convex || shape == Shape::any;
   const L none(0.0), all(grid.cells);

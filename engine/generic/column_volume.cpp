@@ -8,7 +8,8 @@
 namespace pkm::generic {
 namespace {
 
-/// Maximum number of slices that the search for the nodes of samples examines, if the volume is known without slices.
+/// Maximum number of slices that are evaluated to place the quadrature nodes of samples, if the volume is known without
+/// slices.
 constexpr long kMaxSlicesForNodes = 4'000'000;
 
 /// The coordinates that are integrated over although they are not swept. The quadrature over slices has at most three
@@ -144,7 +145,7 @@ std::vector<double> ColumnVolume::inputs_of_default_design() const {
   return inputs;
 }
 
-/// Chooses the plan whose analysis of the default design at low accuracy takes the least work.
+/// Chooses the plan of slices whose analysis of the default design at low accuracy takes the least work.
 SlicePlan ColumnVolume::choose_slices() const {
   const SlicePlan& first = plans_.front();
   const double tolerance = first.order.v ? 1e-3 : 1e-2;
@@ -213,7 +214,7 @@ Integral<double> ColumnVolume::measure_inside(std::span<const double> inputs, st
     by_corner_curves = found.has_value();
     if (found && needs_gradient) corner_curves_->add_gradient(by_input, scratch.corner_curves);
   }
-  // If there are outermost coordinates, samples are computed from slices of their own.
+  // If there are outermost coordinates, place_nodes() places the nodes of the samples later.
   if (found && (!needs_samples_ || has_outermost())) return *found;
   if (found && place_between_ranges(inputs, by_corner_curves, scratch)) return *found;
   if (found) {  // the volume is known, and the slices only place the nodes of samples

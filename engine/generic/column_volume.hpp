@@ -48,7 +48,8 @@ class ColumnVolume {
   /// The quadrature over slices. Its plan is chosen when this function is first called, because the choice can take
   /// longer than many evaluations of a volume from edges.
   const NestedIntegral& slices() const;
-  /// Prepares slices().for_each_node(). @param for_gradient  true: the nodes will have derivatives
+  /// Places the quadrature nodes that slices().for_each_node() visits. @param for_gradient  true: the nodes will have
+  /// derivatives
   void place_nodes(std::span<const double> inputs, bool for_gradient, Scratch& scratch) const;
   /// The quadrature over the outermost coordinates, if the volume has more than three coordinates.
   const OuterQuadrature& outermost() const { return outermost_; }

@@ -24,7 +24,8 @@ struct Moments {
   double F, J0, J1, J2;
 };
 
-/// Computes the integrals F, J0, J1 and J2 of R, 1/R, w/R and w^2/R.
+/// Computes the integrals F, J0, J1 and J2 of R = sqrt(q), 1/R, w/R and w^2/R over w in [-h/2, h/2], where q is a
+/// quadratic polynomial in w.
 /// @param r, r2  values of R at the lower and the upper endpoint
 /// @param curvature  the coefficient of w^2 in q
 /// With y = q_2 h^2 / s^2, s = r + r2, d = r2 - r, and Y = y / (1 + sqrt(1 - y))^2,
@@ -83,8 +84,8 @@ std::size_t crossings(const Conic& P, const Conic& Q, std::array<Point, 16>& poi
     if (std::fabs(s) <= 1 + 1e-9 && count < points.size()) points[count++] = {t, s};
   };
   std::array<double, 8> at{};
-  // The linear combination of the conics without s^2, d0(t) + d1(t) s = 0, is substituted into the one with the larger
-  // curvature.
+  // The linear combination of the conics without s^2, d0(t) + d1(t) s = 0, is substituted into the conic with the
+  // larger curvature.
   const bool first = std::fabs(P.c[5]) * Q.scale >= std::fabs(Q.c[5]) * P.scale;
   const Conic &A = first ? P : Q, &B = first ? Q : P;
   std::array<double, 6> d = B.c;

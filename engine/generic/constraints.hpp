@@ -7,7 +7,8 @@
 
 namespace pkm::generic {
 
-/// The constraints as nodes of a separate graph, in which the signs of the working mode are constants.
+/// The constraints of a feasible pose as nodes of a separate graph, in which the signs of the working mode are
+/// constants.
 struct PoseConstraints {
   Graph graph;
   /// Constraints, each satisfied if >= 0, in the order Model::domains, Model::margins, Model::defined.
@@ -15,7 +16,8 @@ struct PoseConstraints {
   std::vector<CrankRangeNodes> crank_ranges;
   std::vector<AnnulusNodes> annuli;
   std::vector<RodAndPathNodes> paths;
-  /// Lower and upper bound of the range that is searched, by coordinate; std::nullopt if the file does not define it.
+  /// Lower and upper bound of the range in which a coordinate is searched, by coordinate; std::nullopt if the mechanism
+  /// file does not define it.
   std::vector<std::optional<std::array<Node, 2>>> box;
 };
 

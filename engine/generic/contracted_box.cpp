@@ -38,7 +38,7 @@ Interval rounded_outward(const Interval& range) {
   return {at(from), at(to)};
 }
 
-/// The constraints of a pose, with those on the reach of the limbs.
+/// The constraints of a pose, and the constraints on the distances that the limbs can span.
 IntervalConstraints constraints_with_reach(const Model& model, const std::vector<Interval>& inputs) {
   Model extended = model;
   for (const Node node : model.reach_constraints) extended.domains.push_back({"reach", "", node});

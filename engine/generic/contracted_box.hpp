@@ -45,8 +45,8 @@ class ContractedBox {
 
 /// Values of the model's inputs for all designs between the minimum and maximum of every parameter.
 std::vector<Interval> inputs_of_all_designs(const Model& model);
-/// Range in which a contracted coordinate is searched unless the file gives its reach: a full rotation for an angle,
-/// all numbers for other coordinates.
+/// Range in which a contracted coordinate is searched unless the mechanism file gives its reach: a full rotation for an
+/// angle, all numbers for other coordinates.
 Interval widest_range(const Model& model, std::size_t coordinate);
 /// Advice for an error message: what the user can write in the file if a coordinate has no search box.
 std::string advice_for_box(const std::string& coordinate);

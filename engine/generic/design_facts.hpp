@@ -18,7 +18,7 @@ class DrivePlaces {
   std::vector<PlacedDrive> operator()(const Pose<double>& pose) const;
 
  private:
-  std::size_t coordinates_;                ///< position of the coordinates among the inputs
+  std::size_t coordinates_;                ///< index of the first coordinate among the inputs of the graph
   std::vector<const JointNodes*> driven_;  ///< joints with drives; joints of parallel rods may share a drive
   expression::Program program_;            ///< outputs: point, axis and position of each driven joint
   std::vector<double> inputs_;  ///< values of the graph's inputs for the design; those of the coordinates are 0

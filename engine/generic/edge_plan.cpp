@@ -126,7 +126,8 @@ EdgePlan::EdgePlan(const Evaluation& evaluation, std::size_t mode, const std::ve
   std::vector<Node> constants, outputs;
   std::vector<bool> is_covered(known.all.size());
   for (const RodAndPathNodes& path : known.paths) {
-    // Vector such that the vector v of the path is p + offset, where p consists of the swept coordinates.
+    // Vector such that the vector v from the joint on the base to the joint on the platform is p + offset, where p
+    // consists of the swept coordinates.
     std::array<Node, 3> offset{};
     bool is_translation = graph[path.branch].is_number();
     for (std::size_t i = 0; i < 3 && is_translation; ++i) {
@@ -211,7 +212,8 @@ bool EdgePlan::build(std::span<const double> inputs, Design& design) const {
       double reach = std::numeric_limits<double>::infinity();
       for (const Body& other : design.solid.bodies) reach = std::min(reach, extent(other, body.axis));
       if (reach <= body.radius + margin) {
-        // The plane is omitted; add to `beyond` more than the rounding error of extent().
+        // The plane is omitted as a body, because another body hardly extends beyond it: add this distance and more
+        // than the rounding error of extent() to `beyond`.
         design.beyond += std::max(reach - body.radius, 0.0) + 0.1 * margin;
         return;
       }

@@ -41,8 +41,8 @@ class EdgePlan {
   /// the index of the program output that is the first of its 10 coefficients.
   using Clause = std::vector<std::size_t>;
   struct Rod {
-    /// Index of the program output that is the first of this rod's: B - A with all coordinates 0 (three outputs), axis
-    /// (three), zero (three), rod length, crank length, lower and upper end of the joint range.
+    /// Index of the first program output that describes this rod. The outputs are: B - A with all coordinates 0 (three
+    /// outputs), axis (three), zero (three), rod length, crank length, lower and upper end of the joint range.
     std::size_t output;
     bool is_crank, is_first_root;
   };
@@ -78,9 +78,9 @@ class EdgePlan {
   void add_gradient(Scratch& scratch, std::span<double> by_input) const;
 
   expression::Program program_;
-  /// Index of the first output that is a constraint on the design only; these outputs are the last ones.
+  /// Index of the first program output that is a constraint on the design only; these outputs are the last ones.
   std::size_t constants_ = 0;
-  std::size_t box_ = 0;  ///< index of the first output of the box: lower and upper bound of each coordinate
+  std::size_t box_ = 0;  ///< index of the first program output of the box: lower and upper bound of each coordinate
   std::vector<Rod> rods_;
   std::vector<Clause> clauses_;
   std::string why_not_;

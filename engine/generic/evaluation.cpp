@@ -40,7 +40,8 @@ std::vector<double> numbers_of(std::span<const Dual4> parameters) {
   for (const Dual4& parameter : parameters) numbers.push_back(parameter.a);
   return numbers;
 }
-/// Writes the inputs for the ends of contracted ranges. Their derivatives are 0, because the ends are rounded.
+/// Writes the values of those inputs of the graph that are ends of contracted ranges of coordinates. Their derivatives
+/// are 0, because the ends are rounded.
 template <class S>
 void write_range_ends(const Model& model, const bounds::IntervalBox& box, std::span<S> inputs) {
   for (std::size_t i = 0; i < model.inputs.coordinates; ++i) {

@@ -15,15 +15,18 @@ struct Evaluation {
 
   Model model;
 
-  // Programs that depend on a pose or a state of motion. Comments name the members of Model that are their outputs.
-  expression::Program constraints;  ///< outputs: joints, domains, margins, angles
+  // The following programs depend on a pose or a state of motion. Comments name the members of Model that are outputs.
+
+  expression::Program constraints;  ///< outputs: Model::joints, domains, margins, angles
   expression::Program reported;     ///< outputs: ReportedMargin::shown, quantities
   expression::Program joints, closures, links, origin, rods;
-  expression::Program frame;   ///< outputs: origin, rotation, rotation_directions
+  expression::Program frame;   ///< outputs: Model::origin, rotation, rotation_directions
   expression::Program motion;  ///< outputs: joints, domains, equations; the first stage depends on the design only
   std::optional<expression::BatchStage> motion_batch;  ///< the second stage of `motion`, for SIMD batches of states
 
-  // // Programs that depend on the design only. Where the file does not define a value, its program has no outputs.
+  // The following programs depend on the design only. If the mechanism file does not define a value, the program of
+  // this value has no outputs.
+
   expression::Program requirements;  ///< outputs: both ends of each joint range, Model::required
   expression::Program tests, masses, size, length, radius;
   /// Outputs: Model::force_scales, then both limits of the tension of every cable.

@@ -93,7 +93,7 @@ Solution solve_closures(LoopClosure& closure, Pose<double> pose) {
   return {{}, is_defined_at_start};
 }
 
-/// The working mode in which the inverse kinematics gives these joint positions at a pose; "" if there is none.
+/// The working mode in which the inverse kinematics gives the given joint positions at a pose; "" if there is none.
 std::string mode_with(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose,
                       const AxisVector<double>& joints) {
   const MechanismInfo& info = e.model.info;
@@ -180,8 +180,8 @@ class AssemblySet {
   }
 
  private:
-  // Poses whose difference is smaller [m, or 1 for rotation matrices] are equal. It is 1000 times the error of Newton's
-  // method.
+  // Poses whose difference is smaller [m, or 1 for rotation matrices] are equal. This threshold is 1000 times the error
+  // of Newton's method.
   static constexpr double kSamePose = 1e-6;
 
   /// Replaces the angles of a pose by equivalent angles in the principal ranges (rigid_pose.hpp), unless no working

@@ -17,7 +17,7 @@ std::vector<int> angles_of(const Model& model) {
 std::size_t axis_of(const Model& model, int coordinate) {
   return *model.rotation_axes[static_cast<std::size_t>(coordinate)];
 }
-/// The angle in (-pi, pi] that is the same modulo a revolution.
+/// The angle in (-pi, pi] that differs from the given angle by whole revolutions.
 double wrapped(double angle) { return angle > kPi ? angle - 2 * kPi : angle <= -kPi ? angle + 2 * kPi : angle; }
 
 }  // namespace

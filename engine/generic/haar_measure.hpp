@@ -18,7 +18,7 @@ namespace pkm::generic {
 class HaarMeasure final : public Orientations {
  public:
   /// The reason why the orientations of a mechanism have no measure: its platform does not rotate by three coordinates
-  /// about axes of which adjacent ones differ. Empty if they have one.
+  /// about axes of which adjacent ones differ. Empty if they have a measure.
   static Unsupported refusal(const Model& model);
   /// @param model  a model for which refusal() is empty
   explicit HaarMeasure(const Model& model);

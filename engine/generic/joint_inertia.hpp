@@ -11,7 +11,7 @@ namespace pkm::generic {
 /// that are compiled for another instruction set.
 struct InertiaKernelData {
   const expression::Operand *J, *M_X;  ///< operands of the elements of J and M_X: n x n, row-major
-  const double *registers, *rows;      ///< values of the operands, as in expression::BatchStage
+  const double *registers, *rows;      ///< values of the operands: single numbers, and rows with one number per pose
   std::size_t n, count;                ///< number of joints; number of poses in the batch, a multiple of kLanes
   const double* rotors;                ///< n numbers that are added to the diagonal of M_q, by joint
   double* M_q;                         ///< receives M_q: n x n rows of expression::kRow numbers, one number per pose

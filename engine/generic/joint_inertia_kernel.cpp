@@ -87,8 +87,8 @@ template <class L, int n>
       size += magnitude(lu.u[i][j]);
     }
   lu.run();
-  // Bound of the condition number as in is_clearly_regular(), from sums of magnitudes: of the elements of U above its
-  // diagonal, and of the reciprocals of its diagonal elements.
+  // Bound of the condition number as in is_clearly_regular(), from sums of magnitudes: of the elements above the
+  // diagonal of the upper triangular factor U, and of the reciprocals of its diagonal elements.
   L above(0.0), inverse(0.0);
   for (int i = 0; i < n; ++i) {
     for (int j = i + 1; j < n; ++j) above += magnitude(lu.u[i][j]);

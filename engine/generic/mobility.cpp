@@ -104,8 +104,8 @@ class JointsAtPose {
     if (nullity == 0) return MatrixXd(6, 0);
     const MatrixXd twists = decomposition.matrixV().rightCols(nullity).middleRows(static_cast<Index>(6 * platform_), 6);
     const auto of_platform = decomposed(twists);
-    // This threshold is absolute, because null vectors have length 1, and the platform may be at rest in all of them,
-    // so that there is no reference value.
+    // The rank threshold is absolute here, because null vectors have length 1, and the platform may be at rest in all
+    // of them, so that there is no reference value.
     Index count = 0;
     while (count < of_platform.singularValues().size() && of_platform.singularValues()[count] > kRankThreshold) ++count;
     return of_platform.matrixU().leftCols(count);

@@ -138,8 +138,8 @@ struct DependentCoordinate {
 /// A frame of the mechanism file.
 struct FrameInfo {
   std::string name;
-  std::string on;   ///< name of the frame relative to which it is defined
-  bool is_movable;  ///< true if it moves relative to the frame `on`
+  std::string on;   ///< name of the frame relative to which this frame is defined
+  bool is_movable;  ///< true if this frame moves relative to the frame `on`
 };
 
 /// A rigid body. Twice its kinetic energy is the sum of the terms below; ' is the time derivative.
@@ -171,7 +171,7 @@ struct BodyNodes {
   std::optional<std::array<Node, 3>> inertia{};
   /// Rotation of the axes of `inertia`, by rows; std::nullopt: those of a slender body.
   std::optional<std::array<std::array<Node, 3>, 3>> axes{};
-  std::string part_of{};  ///< name of the body to which this one is rigidly attached; "" if there is none
+  std::string part_of{};  ///< name of the body to which this body is rigidly attached; "" if there is none
 };
 
 /// An elastic beam that is clamped at the point `near` and loaded at the point `far`.
@@ -199,7 +199,7 @@ struct SolidNodes {
 
   /// The elasticity of a solid as a beam: one of its joints clamps it, all other joints load it.
   struct Beam : BeamNodes {
-    std::size_t near_joint;  ///< index of the joint that holds the body
+    std::size_t near_joint;  ///< index of the joint that clamps the beam
     bool is_rod;             ///< true: a rod, pinned at both ends; false: a crank
   };
   std::optional<Beam> beam{};  ///< elasticity of the solid; std::nullopt: it is rigid
@@ -223,7 +223,7 @@ struct JointNodes {
   std::string name;
   std::array<Node, 3> point;
   std::size_t on;                   ///< index of one of the two solids that the joint connects
-  std::optional<std::size_t> from;  ///< index of the other solid that it connects; std::nullopt: the base
+  std::optional<std::size_t> from;  ///< index of the other one of the two solids; std::nullopt: the base
   Couples couples;
   std::vector<std::array<Node, 3>> axes;
   std::optional<Drive> drive{};
@@ -267,7 +267,8 @@ struct Model {
   Inputs inputs;
   std::vector<std::vector<double>> signs;  ///< signs of each working mode, by mode
 
-  // kinematics
+  // The following members describe the kinematics.
+
   std::vector<Node> joints, closures;  ///< formulas of the joint coordinates; left sides of the loop-closure equations
   std::vector<Result> domains;         ///< constraints under which the pose assembles
   std::vector<Result> margins;         ///< constraints that a feasible pose has to satisfy in addition
@@ -285,11 +286,12 @@ struct Model {
   std::vector<Node> joint_errors;
   std::vector<Result> angles;  ///< angles of the passive joints
 
-  // platform frame
+  // The following members describe the platform frame and the other frames.
+
   std::array<Node, 3> origin;
   std::array<std::array<Node, 3>, 3> rotation;  ///< rotation matrix, by rows
   std::vector<DependentCoordinate> dependent;   ///< coordinates that follow from the others
-  std::vector<FrameInfo> frames;                ///< frames of the file
+  std::vector<FrameInfo> frames;                ///< frames of the mechanism file
   /// Axis of the rotation that a coordinate describes, 0 to 2, by coordinate; std::nullopt if it describes none.
   std::vector<std::optional<std::size_t>> rotation_axes;
   /// Angular velocity of the platform for a unit rate of a coordinate, by coordinate.
@@ -297,7 +299,8 @@ struct Model {
   /// Axis of the translation that a coordinate describes, 0 to 2, by coordinate; std::nullopt if none.
   std::vector<std::optional<std::size_t>> translation_axes;
 
-  // design
+  // The following members describe the design: its checks, size, characteristic lengths and thresholds.
+
   std::vector<JointRange> ranges;
   std::vector<Result> required;  ///< constraints that a design has to satisfy to describe a mechanism
   std::vector<DesignMarginInfo> tests;
@@ -314,7 +317,8 @@ struct Model {
   /// if there is no such parameter.
   std::vector<std::optional<std::size_t>> limit_parameters;
 
-  // workspace analysis, by coordinate
+  // The following members describe the ranges in which workspace analyses search the coordinates.
+
   /// Range of each coordinate that a workspace analysis searches; std::nullopt if neither the file nor the constraints
   /// bound it.
   std::vector<std::optional<std::array<Node, 2>>> box;
@@ -323,21 +327,24 @@ struct Model {
   std::shared_ptr<const ContractedBox> contracted_box;  ///< null if no coordinate is contracted
   /// Constraints >= 0 on the distances that the limbs can span, which follow from the other constraints.
   std::vector<Node> reach_constraints;
-  /// Range of each coordinate outside of which no pose is feasible; std::nullopt if the file does not define it.
+  /// Range of each coordinate outside of which no pose is feasible; std::nullopt if the mechanism file defines none.
   std::vector<std::optional<std::array<Node, 2>>> reach;
-  /// Value of each coordinate where an analysis fixes it by default; std::nullopt if the file does not define it.
+  /// Value at which an analysis fixes a coordinate by default, by coordinate; std::nullopt if the mechanism file does
+  /// not define it.
   std::vector<std::optional<Node>> default_values;
 
-  // links
+  // The following members describe the links.
+
   std::vector<LinkNodes> links;
   std::vector<LinkPair> link_pairs;       ///< pairs of indices of links whose clearance is tested
   std::vector<std::size_t> moving_links;  ///< indices of the links whose clearance from obstacles is tested
   /// Index of the clearance limit among MechanismInfo::limits; std::nullopt if there is none. The clearance limit is
   /// not an input of the graph, and is listed after all limits that are inputs.
   std::optional<std::size_t> clearance_limit;
-  std::vector<RodNodes> rods;  ///< rods of those limbs that have one
+  std::vector<RodNodes> rods;  ///< rods of those limbs that have a rod
 
-  // dynamics
+  // The following members describe masses, drive forces and reactions.
+
   std::vector<ArmNodes> arms;
   std::vector<BodyNodes> bodies;
   std::vector<MassCheck> masses;

@@ -73,7 +73,7 @@ struct Symmetric3 {
 template <class S>
 using Rows3 = std::array<std::array<S, 3>, 3>;
 
-/// M M^T.
+/// Returns the symmetric matrix M M^T of a matrix M.
 template <class S>
 [[gnu::always_inline]] inline Symmetric3<S> gram(const Rows3<S>& m) {
   const auto dot = [&](std::size_t i, std::size_t j) {
@@ -157,7 +157,8 @@ struct ExtremeSingularValues {
   Rows3<S> cofactors;
   S determinant;
   Symmetric3<S> square, square_of_cofactors;  ///< M M^T and C C^T, C: cofactors
-  S max_squared, leading_product_squared;     ///< sigma_1^2, (sigma_1 sigma_2)^2
+  /// Sigma_1^2 and (sigma_1 sigma_2)^2, where sigma_1 >= sigma_2 are the largest singular values.
+  S max_squared, leading_product_squared;
   [[gnu::always_inline]] S min_squared() const { return determinant * determinant / leading_product_squared; }
 };
 template <class S>

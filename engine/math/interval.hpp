@@ -55,9 +55,9 @@ struct Interval {
   /// A number in the interval: approximately its midpoint, or an arbitrary finite number if the interval is unbounded.
   double middle() const;
 
-  /// Certified: the formula is defined and >= 0 for all arguments.
+  /// True if it is certified that the formula is defined and >= 0 for all arguments.
   bool is_certified_satisfied() const { return lower >= 0 && is_defined(); }
-  /// Certified: the formula is negative or undefined for all arguments.
+  /// True if it is certified that the formula is negative or undefined for all arguments.
   bool is_certified_violated() const { return !(upper >= 0); }
 };
 
@@ -79,7 +79,8 @@ namespace rounding {
 // Lower (_down) and upper (_up) bounds of a sum, product and quotient of two numbers. Exact cases are not widened: a
 // sum that rounds to 0 is 0, and so are a product with the factor 0 and a quotient with the numerator 0.
 
-/// next_up() and next_down() for arguments other than 0.
+/// up_from() returns the next double towards +infinity, down_from() the next one towards -infinity; the argument must
+/// not be 0.
 inline double up_from(double x) {
   if (!(std::fabs(x) <= std::numeric_limits<double>::max())) [[unlikely]]
     return next_up(x);
@@ -180,7 +181,7 @@ Interval wrapped(const Interval& angle);
 
 // Logical functions: [1, 1] if true for all arguments, [0, 0] if false for all, otherwise [0, 1].
 
-/// x < y, x <= y, x == y, and x != 0.
+/// Comparisons of intervals: x < y, x <= y, x == y, and x != 0.
 Interval less(const Interval& x, const Interval& y);
 Interval less_or_equal(const Interval& x, const Interval& y);
 Interval equal(const Interval& x, const Interval& y);

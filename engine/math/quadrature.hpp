@@ -16,7 +16,7 @@
 
 namespace pkm {
 
-/// A subinterval of the integration.
+/// A subinterval of the range of integration, to which a quadrature rule is applied.
 template <class S>
 struct Subinterval {
   S lower, upper;
@@ -192,7 +192,7 @@ void bisect_cell(std::vector<Cell>& cells, std::size_t index, const Integrate& i
 }
 
 /// Refines a subinterval until its error estimate is at most `tolerance` (absolute): first by the higher rules, then by
-/// recursive bisection to at most the given depth. Decisions depend on values only, never on derivatives.
+/// recursive bisection to at most the given depth. Whether it is refined depends on values only, never on derivatives.
 template <class S, class F>
 void refine(const F& f, double tolerance, const Quadrature& settings, int depth, QuadratureCell<S>& cell) {
   while (!(cell.integral.error <= tolerance) && cell.levels < settings.rule.level.size()) apply_rule(f, settings, cell);

@@ -71,7 +71,7 @@ class MatrixUpTo {
     PKM_EXPECTS(rows <= R && cols <= C);
     for (std::size_t k = 0; k < size(); ++k) m_[k] = S{};
   }
-  /// A column vector.
+  /// Makes a column vector of the given elements.
   MatrixUpTo(std::initializer_list<S> elements) : MatrixUpTo(elements.size()) {
     std::size_t k = 0;
     for (const S& element : elements) m_[k++] = element;
@@ -121,7 +121,7 @@ class MatrixUpTo {
   std::array<S, R * C> m_;  // only the first size() elements are initialised
 };
 
-/// Matrix or MatrixUpTo.
+/// A matrix type of this file: Matrix or MatrixUpTo.
 template <class M>
 concept SmallMatrix = requires {
   typename M::Scalar;

@@ -16,7 +16,8 @@
 
 namespace pkm {
 
-/// The function U(y) defined above, for y < 1.
+/// The function U(y) = (1 - (1 - y) T(y)) / y for y < 1, where T(y) = artanh(sqrt y) / sqrt y, or arctan(sqrt -y) /
+/// sqrt -y if y < 0.
 template <class S>
 S root_integral_series(const S& y) {
   if (std::fabs(value_of(y)) <= 1.0 / 16) {  // 12 terms: the truncation error is below 2^-53

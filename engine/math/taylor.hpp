@@ -21,7 +21,7 @@ struct Taylor {
   Taylor() = default;
   Taylor(double value) : a(value) {}  // not explicit, because formulas combine constants and Taylor numbers
   Taylor(double value, double first, double second) : a(value), d(first), dd(second) {}
-  /// The independent variable.
+  /// The time itself, as the independent variable, with the given value: its derivatives are 1 and 0.
   static Taylor variable(double value) { return {value, 1, 0}; }
 
   friend Taylor operator-(const Taylor& x) { return {-x.a, -x.d, -x.dd}; }

@@ -41,7 +41,7 @@ struct Options {
   std::size_t samples = 20;       ///< number of test poses; fewer if fewer feasible ones are found
 };
 
-/// The array element that the generated code uses as one of the inputs of the graph.
+/// The array element that the generated code reads as one of the inputs of the expression graph.
 struct InputPlace {
   char array = 0;  ///< array that contains the element: 'p' parameters, 'x' pose, 'v' rates; 0: the input is not used
   std::size_t index = 0;
@@ -61,8 +61,8 @@ struct Module {
   std::vector<NamedUnit> parameters, coordinates, joints, margins, quantities;
   std::vector<double> design;  ///< values of all parameters of the mechanism [SI]
 
-  Function inverse;                   ///< computes q, and `assembly`: values that are all >= 0 if the mechanism can be
-                                      ///< assembled at the pose
+  /// Computes q, and `assembly`: values that are all >= 0 if the mechanism can be assembled at the pose.
+  Function inverse;
   Function jacobian;                  ///< computes the Jacobian J
   Function limits;                    ///< computes the margins of the pose
   std::optional<Function> values;     ///< computes the quantities of the pose; std::nullopt: there are none

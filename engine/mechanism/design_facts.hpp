@@ -37,8 +37,8 @@ class DesignFacts {
                                                                               const std::string& mode) const = 0;
 };
 
-/// Finds this interface of a mechanism, which may have been wrapped by with_drive_trains(); null if the mechanism does
-/// not come from a file.
+/// Finds the interface DesignFacts of a mechanism, which may have been wrapped by with_drive_trains(); null if the
+/// mechanism does not come from a file.
 inline const DesignFacts* find_design_facts(const Mechanism& mechanism) {
   return dynamic_cast<const DesignFacts*>(&without_drive_trains(mechanism));
 }

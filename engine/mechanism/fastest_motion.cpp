@@ -21,9 +21,9 @@ bool is_finite_sample(const MotionSample& at) {
 /// Throws std::invalid_argument if the path of a move has a corner: its tangent changes between two samples by more
 /// than its curvature there explains.
 void refuse_corners(const MovesOfMotion::Move& move) {
-  constexpr double kCorner = 0.2;   // change of the tangent between two samples that is always allowed [rad]
-  constexpr double kExplained = 4;  // factor by which the change may exceed the one that the curvature at the samples
-                                    // predicts
+  constexpr double kCorner = 0.2;  // change of the tangent between two samples that is always allowed [rad]
+  // Factor by which the change of the tangent may exceed the change that the curvature at the samples predicts.
+  constexpr double kExplained = 4;
   for (std::size_t i = 1; i < move.samples.size(); ++i) {
     const MotionSample &a = move.samples[i - 1], &b = move.samples[i];
     const AxisVector<double> change = b.velocity - a.velocity;
@@ -66,10 +66,11 @@ double factor_at(const DesignWithLimits& design, const MotionSample& sample, dou
 /// minima of the factor over the time are located by golden-section search.
 void scale_own_law(const MovesOfMotion& moves, const MovesOfMotion::Move& move, const DesignWithLimits& design,
                    FastestMove& found) {
-  // Factor by which a minimum between two samples may be lower than the values at the samples.
+  // A local minimum between samples is searched for only near samples at which the factor of the squared speeds is at
+  // most kCandidates times the smallest one of all samples.
   constexpr double kCandidates = 1.05;
   constexpr double kUnbounded = 1e30;
-  // Final width of the bracket of a minimum, relative to the distance of the samples.
+  // Final width of the bracket of a local minimum over the time, relative to the width of the initial bracket.
   constexpr double kBracketOfPeak = 1e-9;
   const DriveTrains* const trains = design.mechanism.drive_trains();
   const auto violation = [&](const PathPoint<double>& p, double factor) {
@@ -392,7 +393,8 @@ Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes&
       state.squares = std::move(profile.squares);
       state.accelerations = std::move(profile.accelerations);
     } else {
-      // The active limit determines the factor: differentiate this limit implicitly at the fixed time of the extremum.
+      // The limit that is active at the sample `limiting` determines the factor of the squared speeds: differentiate
+      // this limit implicitly, at the fixed time of this sample.
       std::vector<PathPoint<Dual4>> at;
       path_points<Dual4>(design.mechanism, parameters, design.mode, {&result.limiting, 1}, design.wrench, at);
       const PathPoint<Dual<1>> constant = constant_point<Dual<1>>(points_at(design, {&result.limiting, 1})[0]);

@@ -37,8 +37,8 @@ class MovesOfMotion {
   struct Move {
     MovePeriod period;
     std::shared_ptr<const GeometricPath> path;  ///< path of the move, with FastestLaw::optimal; otherwise null
-    std::vector<MotionSample> samples;          ///< samples of the move at the ends of the intervals into which it is
-                                                ///< divided
+    /// Samples of the move at the ends of the intervals into which it is divided.
+    std::vector<MotionSample> samples;
     /// For consecutive samples, the differences of the path parameter or, with FastestLaw::own, of the time [s].
     std::vector<double> steps;
   };
@@ -70,8 +70,8 @@ struct FastestMove {
   std::vector<PathPoint<double>> points;  ///< points of the path at the samples of the move
   /// Time-optimal speed profile, with FastestLaw::optimal; otherwise null.
   std::shared_ptr<const SpeedProfile> profile = {};
-  double factor = 1;           ///< with FastestLaw::own: square of the ratio between the speeds of the fastest motion
-                               ///< and of the given motion
+  /// With FastestLaw::own: square of the ratio of the speeds of the fastest motion to those of the given motion.
+  double factor = 1;
   MotionSample limiting = {};  ///< with FastestLaw::own: the sample of the motion that limits `factor`
   Violation limit = {};        ///< with FastestLaw::own: the limit that is active at `limiting`
 };
@@ -96,8 +96,8 @@ ShortestTimes shortest_times(const MovesOfMotion& moves, const DesignWithLimits&
 Dual4 duration_with_derivatives(const MovesOfMotion& moves, const ShortestTimes& found, const DesignWithLimits& design,
                                 std::span<const Dual4> parameters);
 
-/// Energy of the drives over the fastest motion [J], by the trapezoidal rule over the nodes: of the motors if there are
-/// drive trains, otherwise of the joints. The mechanism must have dynamics.
+/// Energy of the drives over the fastest motion [J], by the trapezoidal rule over the nodes of all moves. It is the
+/// energy of the motors if there are drive trains, otherwise that of the joints. The mechanism must have dynamics.
 /// @param found        result of shortest_times() for the design
 /// @param recuperates  true: drives that brake return their energy; false: it is lost
 double energy_of(const MovesOfMotion& moves, const ShortestTimes& found, const DesignWithLimits& design,
@@ -118,8 +118,9 @@ struct ActivePeriod {
 
 struct FastestMotion {
   double duration = 0;  ///< duration of the motion, including its pauses [s]
-  /// Estimate of the discretisation error of the duration [s]: the larger of its change with half as many nodes and its
-  /// change by the corrections at the nodes; 0 with FastestLaw::own.
+  /// Estimate of the discretisation error of the duration [s]: the larger of its change if half of the nodes are
+  /// omitted and its change if the speeds are reduced until the limits hold at both ends of every interval; 0 with
+  /// FastestLaw::own.
   double error = 0;
   std::shared_ptr<const Motion> motion;  ///< the fastest motion
   std::vector<MovePeriod> moves;         ///< begin and end of each move of the fastest motion

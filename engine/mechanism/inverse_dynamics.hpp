@@ -16,7 +16,7 @@ namespace pkm {
 template <class S>
 struct ActuatorState {
   AxisVector<S> joints, speeds, accelerations;  ///< q [m, rad] and its first and second time derivatives
-  AxisVector<S> forces;  ///< tau of each actuator [N, N m]; NaN if J is singular to working precision
+  AxisVector<S> forces;  ///< force or torque tau of each actuator [N, N m]; NaN if J is singular to working precision
 
   /// Power of the actuator of a joint [W]; > 0 if it drives, < 0 if it brakes.
   S power(std::size_t joint) const { return forces[joint] * speeds[joint]; }

@@ -27,9 +27,10 @@ inline constexpr const char* kQuantityLimit = "quantity";
 struct LimitInfo {
   std::string name;  ///< name of the threshold, for example "beta_max"
   std::string unit;
-  double inactive = 0;  ///< default threshold, which excludes no pose. If a parameter has the same name: its nominal
-                        ///< value; unless a threshold is given, the parameter's value in the design is the threshold
-  double lower = 0;     ///< minimum threshold that a study may give; `upper` is the maximum
+  /// Default threshold, which excludes no pose. If a parameter has the same name as the limit, this is the parameter's
+  /// nominal value; its value in the design is then the threshold, unless a threshold is given.
+  double inactive = 0;
+  double lower = 0;  ///< minimum threshold that a study may give; `upper` is the maximum
   double upper = 0;
   /// Name of the constraint to which the limit belongs: "interference", "singularity-margin" or "clearance";
   /// kQuantityLimit for the limit of a pose quantity.
@@ -56,8 +57,8 @@ struct InputInfo {
 /// Description of a named number that depends on the design, the pose or the motion.
 struct QuantityInfo {
   std::string name, unit, meaning;
-  bool of_design = false;  ///< true if it depends on parameters and limits alone
-  bool of_motion = false;  ///< true if it depends on inputs or on time derivatives
+  bool of_design = false;  ///< true if the quantity depends on parameters and limits alone
+  bool of_motion = false;  ///< true if the quantity depends on inputs or on time derivatives
   /// The quantity as workspace analyses evaluate it, with inputs at their default values. Null if the quantity depends
   /// on the design alone or on time derivatives, or if it belongs to a single limb and is listed at single poses only.
   std::shared_ptr<const PoseQuantity> of_pose = nullptr;
@@ -76,8 +77,9 @@ struct MechanismInfo {
   std::vector<AxisInfo> coordinates;  ///< coordinates of a pose, translations and rotations; 1 to kMaxCoordinates
   std::vector<AxisInfo> joints;       ///< actuated joints, 1 to kMaxJoints
   std::vector<std::string> modes;     ///< working modes; the first is the default
-  std::vector<std::string> branches;  ///< signs that the name of a mode may add after a "/"; the first is the default
-  std::vector<Sweep> sweeps;          ///< all supported sweeps, the default one first
+  /// Signs of branches that may follow a "/" in the name of a working mode; the first is the default.
+  std::vector<std::string> branches;
+  std::vector<Sweep> sweeps;  ///< all supported sweeps, the default one first
   std::vector<LimitInfo> limits;
   std::vector<InputInfo> inputs;
   std::vector<QuantityInfo> quantities;
@@ -121,7 +123,8 @@ class Mechanism {
     return {};
   }
 
-  // Optional abilities; null if the mechanism does not support them.
+  // The following functions return optional abilities; null if the mechanism does not support the ability.
+
   /// Analysis by voxels that is faster than testing every cell.
   virtual const Voxels* voxels() const { return nullptr; }
   virtual const Columns* columns() const { return nullptr; }

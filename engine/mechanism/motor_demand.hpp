@@ -16,7 +16,8 @@ namespace pkm {
 /// @param trajectory  a trajectory with forces at all samples
 std::vector<std::vector<JointLoad>> joint_loads(const DriveTrains& trains, const Trajectory& trajectory);
 
-/// Mean over the samples of the largest dynamic coupling index, if every joint is driven by this motor.
+/// Mean, over the samples of a trajectory, of the largest dynamic coupling index among the joints, if every joint is
+/// driven by the given motor.
 /// @param mechanism  must have dynamics and drive trains
 /// @param mode       one of MechanismInfo::modes
 double mean_coupling_index(const Motor& motor, const Mechanism& mechanism, std::span<const double> parameters,

@@ -46,18 +46,19 @@ struct MultibodyModel {
     JointType type;
     std::size_t parent, child;  ///< indices of the two connected bodies in `bodies`
     Eigen::Vector3d point;
-    std::vector<Eigen::Vector3d> axes{};  ///< unit vectors. Fixed or ball joint: none; universal joint: the axis on the
-                                          ///< parent and the one on the child, perpendicular to each other; otherwise
-                                          ///< one
+    /// Axes of the joint as unit vectors. Fixed or ball joint: none; universal joint: the axis on the parent and the
+    /// one on the child, perpendicular to each other; any other joint: one axis.
+    std::vector<Eigen::Vector3d> axes{};
     std::optional<Drive> drive{};
   };
 
   std::string name;
-  std::vector<Body> bodies;     ///< the first is the base, which does not move
-  std::vector<Joint> tree;      ///< for each body except the base, the joint whose child it is; parents before their
-                                ///< children
-  std::vector<Joint> closures;  ///< the joints that close loops; none of them has a drive
-  std::size_t platform = 0;     ///< index of the platform among the bodies
+  std::vector<Body> bodies;  ///< the first is the base, which does not move
+  /// For each body except the base, the joint whose child the body is; joints of parents precede those of their
+  /// children.
+  std::vector<Joint> tree;
+  std::vector<Joint> closures;                             ///< the joints that close loops; none of them has a drive
+  std::size_t platform = 0;                                ///< index of the platform among the bodies
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();        ///< origin of the platform frame
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< rotation from the platform frame to the base frame
   std::vector<std::pair<std::string, double>> pose;  ///< names and values of the coordinates at the reference pose

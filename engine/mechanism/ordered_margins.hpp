@@ -29,8 +29,8 @@ class OrderedMargins {
                               std::vector<Dual4>& margins) const = 0;
 };
 
-/// Finds this interface of a mechanism, which may have been wrapped by with_drive_trains(); null if the mechanism does
-/// not implement it.
+/// Finds the interface OrderedMargins of a mechanism, which may have been wrapped by with_drive_trains(); null if the
+/// mechanism does not implement it.
 const OrderedMargins* find_ordered_margins(const Mechanism& mechanism);
 
 }  // namespace pkm

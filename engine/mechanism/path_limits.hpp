@@ -69,7 +69,8 @@ struct SpeedBound {
 };
 
 /// Calls visit(LimitOfMotion, LinearLimit<S> or SpeedBound<S>) for every limit at a point, first the speed bounds,
-/// which do not depend on y. The order depends on the limits only; therefore the number of a call identifies its limit.
+/// which do not depend on the squared path speed y. The order depends on the limits only; therefore the number of a
+/// call identifies its limit.
 /// @param trains  drive trains of the joints; null: there are no motors
 template <class S, class Visit>
 void visit_speed_bounds(const PathPoint<S>& p, const MotionLimits& limits, const DriveTrains* trains,
@@ -86,17 +87,17 @@ void visit_speed_bounds(const PathPoint<S>& p, const MotionLimits& limits, const
     }
   }
   bound(LimitKind::tool_speed, 0, limits.tool_speed, S(p.tool11));
-  // The component of the tool's acceleration normal to its velocity is proportional to y, so that its limit is an upper
-  // bound of y.
+  // The component of the tool's acceleration normal to its velocity is proportional to the squared path speed y, so
+  // that its limit is an upper bound of y.
   if (std::isfinite(limits.tool_acceleration)) {
     const double normal = p.tool11 > 0 ? std::fmax(p.tool22 - p.tool12 * p.tool12 / p.tool11, 0) : p.tool22;
     visit(LimitOfMotion{LimitKind::tool_acceleration}, SpeedBound<S>{S(limits.tool_acceleration / std::sqrt(normal))});
   }
 }
 
-/// Selects the inequality to impose if it is sufficient that one of two inequalities holds. If both bound u from the
-/// same side, the weaker one is imposed; if together they exclude no u, neither (std::nullopt); if they exclude an
-/// interval of u, the one with the steeper slope.
+/// Of two inequalities for the path acceleration u, one of which has to hold, selects the one to impose. If both bound
+/// u from the same side, the weaker one is imposed; if together they exclude no u, neither (std::nullopt); if they
+/// exclude an interval of u, the one with the steeper slope.
 template <class S>
 std::optional<LinearLimit<S>> weaker(const LinearLimit<S>& a, const LinearLimit<S>& b) {
   const auto slope = [](const LinearLimit<S>& x) { return value_of(x.slope); };
@@ -148,8 +149,8 @@ void visit_linear_limits(const PathPoint<S>& p, const S& y, const MotionLimits& 
     visit(which, other.value_or(LinearLimit<S>{S(0.0), S(0.0), S(1.0), 1}));
   }
   if (std::isfinite(limits.tool_acceleration) && p.tool11 > 0) {
-    // |X' u + X'' y|^2 <= a^2 restricts u to an interval about -X'.X'' y / X'.X', which two linear inequalities
-    // describe
+    // The limit a of the tool's acceleration X' u + X'' y restricts the path acceleration u to an interval about
+    // -X'.X'' y / X'.X', which two linear inequalities describe.
     const double a = limits.tool_acceleration, tangential = std::sqrt(p.tool11);
     const double normal = std::fmax(p.tool22 - p.tool12 * p.tool12 / p.tool11, 0);
     const S half_width = sqrt_or_zero(S(a * a - y * y * normal));
@@ -208,8 +209,8 @@ struct LargestSquare {
 };
 LargestSquare largest_square(const PathPoint<double>& p, const MotionLimits& limits, const DriveTrains* trains);
 
-/// The limit that is violated most for given y and u. The violation is the demand divided by the limit, minus 1; if it
-/// is negative, the limit is satisfied.
+/// The limit that is violated most for a given squared path speed y and path acceleration u. The violation is the
+/// demand divided by the limit, minus 1; if it is negative, the limit is satisfied.
 struct Violation {
   double value = -1;
   LimitOfMotion limit;

@@ -20,8 +20,8 @@ namespace pkm {
 template <class S>
 struct PathPoint {
   AxisVector<S> q1, q2;  ///< first and second derivative of each joint coordinate with respect to the path parameter
-  /// Coefficients of the joint forces tau = A u + B y + C, including the reflected inertia of drive trains; empty
-  /// without masses.
+  /// Coefficients of the joint forces tau = A u + B y + C for the path acceleration u and the squared path speed y,
+  /// including the reflected inertia of drive trains; empty if the mechanism has no masses.
   AxisVector<S> A, B, C;
   /// X'.X', X'.X'' and X''.X'', where X' and X'' are the derivatives of the pose with respect to the path parameter,
   /// for coordinates that are lengths only.

@@ -87,7 +87,7 @@ inline FixedCoordinate how_fixed(const WorkspacePlan& plan, int coordinate) {
 }
 
 /// Per-pose quantities to compute in addition to the volume: the union over all objectives and constraints, so that one
-/// pass serves them all.
+/// analysis of a workspace serves all of them.
 struct FieldRequest {
   std::vector<const PoseQuantity*> fields;
   /// True: the poses of all samples are stored, too; columns may omit them if no field needs the inertia.

@@ -62,11 +62,12 @@ struct PoseQuantity {
   bool per_joint = false;
   /// Statistics that expressions can use; unused elements have no `statistic`.
   std::array<NamedStatistic, 4> results = {};
-  // Function that computes the values at a pose (one value, or one for each joint). Exactly one of the following
-  // members is set.
-  /// Uses the result of the inverse kinematics: J, margins, ...
+  // Exactly one of the following three members is set. It computes the values of the quantity at a pose: one value, or
+  // one for each joint.
+
+  /// Computes the values from the result of the inverse kinematics: J, margins, ...
   void (*from_report)(const PoseReport&, double* values) = nullptr;
-  InertiaFunction from_inertia = {};        ///< uses the joint-space inertia M_q
+  InertiaFunction from_inertia = {};        ///< computes the values from the joint-space inertia M_q
   std::optional<std::size_t> formula = {};  ///< index of the formula among MechanismInfo::quantities
 
   /// @return true if the values are computed from the joint-space inertia, which requires dynamics and a working mode

@@ -21,12 +21,12 @@ void add_reactions(const Mechanism& mechanism, std::span<const double> parameter
 struct LoadSummary {
   /// For each of the components x, y and z: true if it is determined at every sample.
   std::array<bool, 3> determined = {true, true, true};
-  double peak = 0, rms = 0;  ///< maximum, and root of the mean square, of the magnitude [N, N m]
-  std::size_t at = 0;        ///< index of the first sample that attains the maximum within rounding
+  double peak = 0, rms = 0;  ///< maximum and root mean square of the magnitude of the force or couple [N, N m]
+  std::size_t at = 0;        ///< index of the first sample at which the magnitude is `peak`, within rounding
 };
 
 struct ReactionLoads {
-  std::string name, on;  ///< names of the joint and of the body on which the reaction acts, see JointReaction
+  std::string name, on;  ///< names of the joint and of the body on which the reaction acts
   LoadSummary force, couple;
 };
 

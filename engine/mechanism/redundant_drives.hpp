@@ -19,8 +19,8 @@ class LimitedDrives {
   virtual std::vector<std::size_t> cables() const = 0;
 };
 
-/// Finds this interface of a mechanism, which may have been wrapped by with_drive_trains(); null if its drives have no
-/// limits and share a load by least norm.
+/// Finds the interface LimitedDrives of a mechanism, which may have been wrapped by with_drive_trains(); null if its
+/// drives have no limits and share a load by least norm.
 const LimitedDrives* find_limited_drives(const Mechanism& mechanism);
 
 /// The limits of the drive forces of a mechanism.
@@ -32,9 +32,9 @@ Unsupported why_no_drive_forces(const Mechanism& mechanism);
 
 /// Drive forces for an acceleration under a wrench, and the reason if there are none.
 struct DistributedForces {
-  std::optional<AxisVector<double>> tau;  ///< force or torque of each drive [N, N m]; std::nullopt if no forces balance
-                                          ///< the load
-  std::string reason;                     ///< reason why there are no forces; "" if there are
+  /// Force or torque of each drive [N, N m]; std::nullopt if no forces balance the load.
+  std::optional<AxisVector<double>> tau;
+  std::string reason;  ///< reason why there are no forces; "" if there are
 };
 DistributedForces distributed_forces(const PoseDynamics<double>& d, const AxisVector<double>& acceleration,
                                      const Wrench<double>& wrench, const DriveLimits& limits);

@@ -15,16 +15,17 @@ constexpr double kInset = 1e-13;
 
 /// A move or a pause of the retimed motion.
 struct TimePiece {
-  double begin, duration;  ///< begin in the retimed motion, and duration [s]
-  double original;         ///< begin in the original motion [s]
+  double begin, duration;  ///< begin of the move or pause in the retimed motion, and its duration [s]
+  double original;         ///< begin of the move or pause in the original motion [s]
   bool moves = false;      ///< true: a move; false: a pause
-  double end = 0;          ///< moves only: end in the original motion [s]
-  double factor = 1;       ///< factor by which the squared speeds of the profile, or (FastestLaw::own) of the original
-                           ///< motion, are multiplied
+  double end = 0;          ///< moves only: end of the move in the original motion [s]
+  /// Factor by which the squared speeds of the profile, or (FastestLaw::own) of the original motion, are multiplied.
+  double factor = 1;
+
   // The following members are set for moves with FastestLaw::optimal:
   std::shared_ptr<const GeometricPath> path = {};
   std::shared_ptr<const SpeedProfile> profile = {};
-  /// Times and path lengths at the nodes of the profile, before `factor` is applied.
+  /// Times and path lengths at the nodes of the speed profile, before `factor` is applied.
   std::vector<double> times = {}, lengths = {};
 };
 
@@ -152,7 +153,7 @@ class SampledLimits {
                 std::size_t samples, std::vector<double> factors)
       : moves_(moves), times_(times), design_(design), samples_(samples), factors_(std::move(factors)) {}
 
-  /// Slows the moves down as far as necessary, and returns the resulting motion.
+  /// Slows the moves down until all limits hold at the sampled times, and returns the resulting motion.
   std::shared_ptr<const Motion> satisfy() {
     constexpr int kMaxSteps = 100;
     for (int step = 0; step < kMaxSteps; ++step)
@@ -274,8 +275,8 @@ SpeedProfile corrected_profile(const MovesOfMotion::Move& move, const FastestMov
                                const DesignWithLimits& design, const MotionLimits& limits) {
   constexpr int kIterations = 8;
   constexpr double kNegligible = 1e-5;  // relative violations of a limit up to this are not corrected
-  constexpr double kReserve = 0.02;     // fraction of the limits that is kept in addition to what is needed to hold the
-                                        // pose at rest
+  // The reduced limits exceed the load of holding the pose at rest by at least this fraction of the full limits.
+  constexpr double kReserve = 0.02;
   const DriveTrains* const trains = design.mechanism.drive_trains();
   SpeedProfile profile = *found.profile;
   std::vector<double> scales(found.points.size(), 1.0);

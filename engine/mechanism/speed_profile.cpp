@@ -82,8 +82,8 @@ class ProfileSolver {
   std::span<const double> scales_;
 };
 
-/// Derivative, with respect to the squared speed x, of the path acceleration at which the limit of this number is
-/// attained.
+/// Derivative, with respect to the squared speed x, of the path acceleration at which the linear limit with the index
+/// `number` is attained.
 double end_slope(const PathPoint<double>& point, double x, const MotionLimits& limits, const DriveTrains* trains,
                  int number) {
   return end_of_interval(constant_point<Dual<1>>(point), Dual<1>::variable(x, 0), limits, trains, number).v[0];

@@ -22,12 +22,12 @@
 
 namespace pkm {
 
-/// The limit that determines a value of the profile.
+/// The limit that determines a value of the speed profile.
 struct BindingLimit {
   enum class By { speed, acceleration, deceleration, next, floor } by = By::floor;
   /// Number of the limit in the order of visit_speed_bounds() or visit_linear_limits(). With By::floor, the minimum of
-  /// u is the one that stops the motion at the next point; `number` is then the linear limit that would allow an even
-  /// smaller u.
+  /// the path acceleration is the one that stops the motion at the next point; `number` is then the linear limit that
+  /// would allow an even smaller path acceleration.
   int number = -1;
 };
 

@@ -16,8 +16,8 @@ class TotalMass {
   virtual Dual4 total_mass(std::span<const Dual4> parameters) const = 0;
 };
 
-/// Finds this interface of a mechanism, which may have been wrapped by with_drive_trains(); null if the mechanism has
-/// no masses, or does not list its bodies.
+/// Finds the interface TotalMass of a mechanism, which may have been wrapped by with_drive_trains(); null if the
+/// mechanism has no masses, or does not list its bodies.
 const TotalMass* find_total_mass(const Mechanism& mechanism);
 
 }  // namespace pkm

@@ -24,20 +24,23 @@ struct TrajectoryPoint {
   std::optional<double> conditioning;
   /// Position q [m, rad], velocity and acceleration of each joint.
   std::optional<AxisVector<double>> joints, speeds, accelerations;
-  std::optional<AxisVector<double>> forces, power;  ///< tau [N, N m], tau qdot [W]; > 0: the actuator drives
+  /// Force or torque tau of each joint [N, N m], and its power tau qdot [W], > 0 if the actuator drives.
+  std::optional<AxisVector<double>> forces, power;
   /// Torque [N m] and speed [rad/s] of each motor, if there are drive trains.
   std::optional<AxisVector<double>> torques, motor_speeds;
   std::vector<double> quantities;      ///< values of MechanismInfo::quantities; NaN: undefined
   std::optional<Reactions> reactions;  ///< reactions in the joints, set by add_reactions()
 };
 
-/// Statistics over all samples at which the value exists. Vectors have one element per joint.
+/// Statistics over the samples of a trajectory; each is taken over those samples at which its value exists. Vectors
+/// have one element per joint.
 struct TrajectorySummary {
   std::size_t infeasible = 0;                    ///< number of samples that are infeasible
   std::optional<AxisVector<double>> peak_speed;  ///< maximum |qdot| [m/s, rad/s]; std::nullopt if no sample has speeds
-  bool has_forces = false;                       ///< true if every sample has forces; otherwise all members below are 0
-  AxisVector<double> peak_force, rms_force;      ///< maximum |tau|, and root-mean-square tau over the samples [N, N m]
-  AxisVector<double> peak_power;                 ///< maximum |tau qdot|, driving or braking [W]
+  bool has_forces = false;  ///< true if every sample has forces; otherwise all members from `peak_force` on are 0
+  /// Maximum |tau| and root-mean-square tau of each joint over the samples [N, N m].
+  AxisVector<double> peak_force, rms_force;
+  AxisVector<double> peak_power;  ///< maximum |tau qdot|, driving or braking [W]
   /// Torques [N m] and speed [rad/s] of the motors of drive trains.
   AxisVector<double> peak_torque, rms_torque, peak_motor_speed;
   double peak_total_power = 0, min_total_power = 0;  ///< maximum and minimum of the sum of the powers of all joints [W]
@@ -48,7 +51,7 @@ struct TrajectorySummary {
 
 struct Trajectory {
   double duration = 0;
-  bool periodic = false;  ///< true if is_periodic() holds; the energies are then those of one cycle
+  bool periodic = false;  ///< true if the motion can be repeated (is_periodic()); energies are then per cycle
   std::vector<TrajectoryPoint> points;
   TrajectorySummary summary;
 };

@@ -116,7 +116,8 @@ class MechanismWithDriveTrains final : public Mechanism,
   }
 
   /// The kinetic energy of a rotor of inertia I at gear ratio g is I (g qdot)^2 / 2. With D = diag(I g^2) and
-  /// qdot = J Xdot, the rotors add J^T D J to M_X and J^T D Jdot Xdot to h_X.
+  /// qdot = J Xdot, the rotors add J^T D J to the inertia matrix M_X and J^T D Jdot Xdot to the velocity terms h_X of
+  /// the equations of motion.
   template <class S>
   void find_dynamics(std::span<const S> parameters, const std::string& mode, std::span<const MotionState<S>> states,
                      std::span<PoseDynamics<S>> found) const {

@@ -45,7 +45,7 @@ class VoxelEvaluator : public WorkspaceEvaluator {
   }
 };
 
-/// Calls the overload of evaluate() for the scalar type S.
+/// Analyses a workspace by that overload of evaluate() which computes results of the scalar type S.
 /// @param evaluator  its gradients() must not be null if S is Dual4
 template <class S>
 void evaluate_workspace(const WorkspaceEvaluator& evaluator, std::span<const S> parameters, Scratch& scratch,

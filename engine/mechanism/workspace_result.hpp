@@ -30,7 +30,7 @@ struct WorkspaceResult {
   // The following vectors have one element per feasible sample if they were requested; otherwise they are empty:
   std::vector<S> weight;
   std::vector<Pose<S>> pose;
-  /// For each requested quantity, one vector of samples, or one for each joint.
+  /// For each requested quantity, the vector of its values at the samples, or one such vector for each joint.
   std::map<const PoseQuantity*, std::array<std::vector<S>, kMaxJoints>> fields;
 
   /// Values of a quantity at all samples; empty if the quantity was not requested.

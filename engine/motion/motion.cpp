@@ -8,7 +8,8 @@ namespace pkm {
 
 std::vector<expression::Node> Motion::write(TimeGraph& to) const {
   std::vector<expression::Node> pose = write_(to);
-  // The constants become inputs, because folding them in double precision would round.
+  // Coordinates that are constant numbers become inputs of the graph: otherwise the graph would evaluate formulas of
+  // them in advance in double precision, with rounding errors.
   for (expression::Node& node : pose)
     if (to.graph[node].is_number()) node = to.input(to.graph[node].number).node();
   return pose;

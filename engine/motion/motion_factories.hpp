@@ -36,7 +36,8 @@ struct PeakRates {
 double min_move_duration(TimeLaw law, std::span<const AxisInfo> coordinates, const AxisVector<double>& from,
                          const AxisVector<double>& to, const PeakRates& limits);
 
-/// Indices of the coordinates x, y, z and of the rotation of the platform; std::nullopt if there is none.
+/// Indices of the coordinates x, y, z and of the rotation of the platform; std::nullopt if the platform does not have
+/// the coordinate.
 struct SpaceAxes {
   std::optional<std::size_t> x, y, z, turn;
 };

@@ -8,7 +8,8 @@
 namespace pkm {
 namespace {
 
-// Number of intervals of the composite quadrature; a multiple of 3, for motions whose speed has kinks at thirds.
+// Number of intervals of the composite quadrature of the speed over the time; a multiple of 3, for motions whose speed
+// has kinks at thirds.
 constexpr std::size_t kPanels = 480;
 // Minimum distance from the ends of the path, relative to its length, at which derivatives are computed.
 constexpr double kFromStop = 1e-7;

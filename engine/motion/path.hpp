@@ -16,7 +16,7 @@ namespace pkm {
 
 class GeometricPath {
  public:
-  /// @param move  one of find_moves(*motion)
+  /// @param move  one of the moves that find_moves(*motion) returns
   GeometricPath(std::shared_ptr<const Motion> motion, const MovePeriod& move);
 
   double length() const { return lengths_.back(); }

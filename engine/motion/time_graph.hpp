@@ -24,7 +24,7 @@ struct TimeGraph {
     inputs.push_back(value);
     return {graph, graph.input(inputs.size() - 1)};
   }
-  /// A constant: a node of the graph if it is exact, otherwise a new input.
+  /// Adds a constant to the graph: a number if the interval is a single value, otherwise a new input.
   expression::Term number(const Interval& value) {
     return value.is_number() ? expression::Term(graph, value.lower) : input(value);
   }

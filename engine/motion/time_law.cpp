@@ -36,7 +36,8 @@ expression::Term path_fraction(TimeLaw law, TimeGraph& graph, const Interval& be
     }
     return u * u * u * (number(10) - u * (number(15) - number(6) * u));
   };
-  // By symmetry s(1 - u) = 1 - s(u). Each half is computed from its own end, which gives tighter interval enclosures.
+  // The travelled fraction s of a move is symmetric in the elapsed fraction u of the time: s(1 - u) = 1 - s(u). Each
+  // half of the move is computed from its own end, which gives tighter interval enclosures.
   const auto half = [&](const Term& u) {
     return s(call(operation("min"), call(operation("max"), u, number(0)), number(0.5)));
   };

@@ -95,7 +95,7 @@ void sort_into_fronts(const Scores& scores, std::vector<std::uint32_t>& front) {
   }
 }
 
-/// Merges old members, none of which dominates another, with new designs. Calls keep(is_new, index) for each design
+/// Merges the old members of a non-dominated set with new designs. Calls keep(is_new, index) for each design
 /// that no other one dominates, in lexicographic order of the scores. If scores are equal, an old member precedes a new
 /// design.
 /// @param order  indices of the new designs, in lexicographic order of their scores

@@ -41,14 +41,15 @@ struct Capabilities {
 /// Progress report after each batch of evaluations ("generation").
 struct Generation {
   std::int64_t number = 0;                      ///< number of the generation; 0 is the initial population
-  std::size_t first_row = 0;                    ///< rows [first_row, table.size()) are new
+  std::size_t first_row = 0;                    ///< this generation has added the rows [first_row, table.size())
   const EvaluationTable* table = nullptr;       ///< all evaluations of this stage so far
   const std::vector<std::int64_t>* population;  ///< row numbers of the current population
   /// Row number of the best design (with several objectives, of the compromise solution); -1: none yet.
   std::int64_t best_row = -1;
-  const std::vector<StartOutcome>* starts = nullptr;  ///< outcomes of the finished starts; null unless a solver reports
-  /// Function of solver stages that returns, for a checkpoint, the evaluations and outcomes of starts that are not yet
-  /// merged into the table.
+  /// Outcomes of those solver runs of a multistart search that have finished; null for optimisers without such runs.
+  const std::vector<StartOutcome>* starts = nullptr;
+  /// In a solver stage, function that returns, for a checkpoint, the evaluations and outcomes of those multistart runs
+  /// that are not yet merged into the evaluation table.
   std::function<std::vector<UnmergedRun>()> ahead = {};
   /// Maximum number of evaluations still to be made; nullopt: the evaluation limit of the stage minus the evaluations
   /// made.
@@ -76,9 +77,10 @@ class Monitor {
 
 struct StageResult {
   StopReason reason = StopReason::generations;
-  std::int64_t best_row = -1;             ///< row number of the best design in the stage's table; -1: none
-  std::vector<StartOutcome> starts = {};  ///< outcome of each start; empty unless a solver ran the stage
-  /// Evaluations of the starts that an interrupted solver has not yet merged into the table; otherwise empty.
+  std::int64_t best_row = -1;             ///< row number of the best design in the evaluation table; -1: none
+  std::vector<StartOutcome> starts = {};  ///< outcome of each multistart run; empty for other stages
+  /// Evaluations of those multistart runs that an interrupted solver stage has not yet merged into the evaluation
+  /// table; otherwise empty.
   std::vector<UnmergedRun> ahead = {};
   std::optional<Front> front = {};  ///< the Pareto front, with several objectives; otherwise std::nullopt
 };
@@ -102,15 +104,15 @@ struct StageInput {
   Monitor& monitor;
   std::uint64_t seed = 1;
   std::vector<StartDesign> starts;    ///< start designs from the study or from earlier stages; may be empty
-  PreviousFront previous_front = {};  ///< empty unless the study has several objectives
-  /// For a resumed stage, the recorded evaluations, in which those of the finished starts `recorded_starts` come first,
-  /// and the evaluations of further starts that were not yet merged into the table. For any other stage, `recorded` is
-  /// null and the lists are empty.
+  PreviousFront previous_front = {};  ///< front of the earlier stages; empty for a single objective
+  /// For a resumed stage, the recorded evaluations, in which those of the finished multistart runs `recorded_starts`
+  /// come first, and the evaluations of further multistart runs that were not yet merged into the evaluation table. For
+  /// any other stage, `recorded` is null and the lists are empty.
   const EvaluationTable* recorded = nullptr;
   std::vector<StartOutcome> recorded_starts = {};
   std::vector<UnmergedRun> recorded_unmerged_runs = {};
 
-  /// Evaluates rows [first, table.size()) of the stage's table; recorded rows are replayed instead.
+  /// Evaluates rows [first, table.size()) of the stage's evaluation table; recorded rows are replayed instead.
   void evaluate(EvaluationTable& table, std::size_t first) const {
     if (recorded)
       ReplayEvaluator(evaluator, *recorded).evaluate(problem, table, first);

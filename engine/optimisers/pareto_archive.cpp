@@ -48,7 +48,8 @@ bool ParetoArchive::add(std::span<const std::int64_t> rows) {
 }
 
 bool ParetoArchive::fix_reference_point(const Scores& feasible) {
-  // Distance of the reference point from the worst value, relative to the objective's range.
+  // For each objective, the distance of the reference point from the worst value of the feasible designs, relative to
+  // the range of their values.
   constexpr double kMargin = 0.1;
   if (feasible.objectives > 3) return false;  // hypervolumes are computed for two and three objectives only
   sample_.values.insert(sample_.values.end(), feasible.values.begin(), feasible.values.end());

@@ -23,19 +23,19 @@ struct ParetoArchivePlan {
 /// The feasible non-dominated designs of a stage, with their indicators.
 ///
 /// An automatic reference point is set at the end of the first generation by which at least `min_feasible_designs`
-/// designs are feasible and every objective has a non-zero range among them: their worst value of each objective plus a
-/// tenth of its range. It does not change afterwards. More than three objectives have neither reference point nor
-/// hypervolume.
+/// designs are feasible and every objective has a non-zero range among them. In each objective it is the worst value of
+/// these designs plus a tenth of the range of their values. It does not change afterwards. More than three objectives
+/// have neither reference point nor hypervolume.
 class ParetoArchive {
  public:
   ParetoArchive(const ParetoArchivePlan& plan, const Problem& problem, const EvaluationTable& table);
 
-  /// Adds evaluated rows of the table. New rows must be in ascending order; rows added before are ignored.
+  /// Adds evaluated rows of the evaluation table. New rows must be in ascending order; rows added before are ignored.
   /// @return true if the front changed
   bool add(std::span<const std::int64_t> rows);
   const Front& front() const { return front_; }
   void set_spread(double spread) { front_.spread = spread; }
-  /// Row number of the Chebyshev (min-max) compromise solution in the table; -1 while no design is feasible.
+  /// Row number of the Chebyshev (min-max) compromise solution in the evaluation table; -1 while no design is feasible.
   std::int64_t compromise_row() const { return compromise_; }
 
  private:

@@ -41,7 +41,8 @@ double combinations(const Levels& levels) {
   return product;
 }
 
-// Evaluates and reports the rows appended to the table, one generation at a time, and tracks the best design.
+// Evaluates and reports the rows appended to the evaluation table, one generation at a time, and tracks the best
+// design.
 class SweepRecorder {
  public:
   SweepRecorder(const StageInput& input, EvaluationTable& table) : input_(input), table_(table) {

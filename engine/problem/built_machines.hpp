@@ -56,7 +56,8 @@ struct ToleranceModel {
   void sample(std::size_t index, std::span<const double> design, std::vector<double>& parameters) const;
 };
 
-/// A statistic over built machines that replaces the value of a quantity: `robust` of a study, or a yield.
+/// A statistic over built machines that replaces the value of a quantity: the one that the key `robust` of a study
+/// selects, or a yield.
 struct SampledValue {
   enum class Statistic { worst, mean, quantile, yield, yield_lower, yield_upper };
   Statistic statistic;
@@ -98,7 +99,8 @@ std::vector<std::pair<std::size_t, double>> sample_weights(const SampledValue& s
 
 /// Counts the sampled machines that satisfy all constraints, i.e. all of whose margins are >= 0.
 Yield yield_of(const MachineValues& values);
-/// The share of good machines or, depending on the statistic, the lower or upper bound of its confidence interval.
+/// The share of machines that satisfy all constraints or, depending on the statistic, the lower or upper bound of the
+/// confidence interval of this share.
 double yield_statistic(const SampledValue& sampled, const Yield& yield);
 
 /// The distribution of built machines, and the problem that is evaluated for each sampled machine.

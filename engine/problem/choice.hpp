@@ -10,8 +10,8 @@ namespace pkm {
 
 struct Choice {
   std::string variable;           ///< name of the variable, which is also a parameter of the mechanism
-  std::size_t parameter = 0;      ///< index of the parameter
-  std::vector<std::string> rows;  ///< names of the rows
+  std::size_t parameter = 0;      ///< index of this parameter of the mechanism
+  std::vector<std::string> rows;  ///< names of the rows of the table
 
   /// Index of the row that a value of the parameter selects.
   std::size_t row(double value) const {

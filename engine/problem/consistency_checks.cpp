@@ -89,8 +89,8 @@ void compare_limits(const ProblemParts& parts, const std::vector<std::vector<dou
   }
 }
 
-/// Finds values of fixed coordinates that none of the designs reaches; these are the designs at the vertices of the
-/// bounds.
+/// Finds values of fixed coordinates that no design reaches.
+/// @param designs  the designs at the vertices of the variables' bounds
 void check_fixed(const ProblemParts& parts, const std::vector<std::vector<double>>& designs, const WorkspacePlan& plan,
                  const std::string& table, bool is_contradiction, Findings& found) {
   for (const FixedCoordinate& fixed : plan.fixed) {
@@ -127,12 +127,12 @@ void widen_by_reach(const Mechanism& mechanism, const std::vector<std::vector<do
       for (std::size_t axis = 0; axis < 3; ++axis) widen(hull[axis], {map.lower[axis], map.upper[axis]});
     }
   } catch (const std::invalid_argument&) {
-    // The mechanism does not define a box of its workspace.
+    // The mechanism does not define a box of its workspace, by which `hull` could be extended.
   }
 }
 
-/// Finds coordinates in which the box of a plan lies entirely outside the ranges that the designs reach; these are the
-/// designs at the vertices of the bounds.
+/// Finds coordinates in which the box of a plan lies entirely outside the ranges that the designs reach.
+/// @param designs  the designs at the vertices of the variables' bounds
 void check_box(const ProblemParts& parts, const std::vector<std::vector<double>>& designs, const WorkspacePlan& plan,
                const std::string& table, bool is_contradiction, Findings& found) {
   if (!plan.box()) return;

@@ -48,7 +48,7 @@ struct ProblemParts {
   std::shared_ptr<const Mechanism> mechanism;
   std::vector<double> parameters;  ///< values of all parameters of the mechanism; a design replaces those that vary
   DesignSpace space;
-  std::vector<std::size_t> varies;  ///< variable i is parameter varies[i]
+  std::vector<std::size_t> varies;  ///< design variable i is parameter varies[i] of the mechanism
   WorkspacePlan plan;
   FieldRequest request;
   std::vector<Region> regions;
@@ -120,7 +120,7 @@ class DesignProblem final : public Problem {
   std::string failure_reason(std::span<const double> design, Detail detail) const;
   /// Derivatives of objectives and margins with respect to any parameters, also those that are not variables.
   /// @param by  indices of the parameters
-  /// @return (objectives + margins) rows of 1 + by.size() numbers, as for EvaluationShape::derivatives
+  /// @return (objectives + margins) rows of 1 + by.size() numbers: the value, then its derivatives
   std::vector<double> derivatives(std::span<const double> parameters, std::span<const std::size_t> by) const;
 
  private:
@@ -159,7 +159,8 @@ class DesignProblem final : public Problem {
   /// Calls an external function for the designs whose parameters are the rows of `parameters`.
   void evaluate_external(const std::string& call, std::span<const double> parameters,
                          std::span<ExternalValue> values) const;
-  /// Stores the values of external functions and updates the status. @return the reason why the design failed
+  /// Stores the values of external functions and updates the status. @return the reason of the first failed call; "" if
+  /// none failed
   std::string store(std::span<const ExternalValue> values, const EvaluationSlot& result) const;
   DesignReport empty_report(std::span<const double> parameters) const;
   std::string failure_reason(const DesignReport& report) const;

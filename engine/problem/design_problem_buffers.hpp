@@ -15,7 +15,7 @@ S margin_of(const NamedQuantity& named, const S& value) {
 
 struct DesignProblem::Buffers {
   std::vector<double> parameters;
-  std::vector<Dual4> duals;  ///< the parameters with derivatives
+  std::vector<Dual4> duals;  ///< the parameters of the design, with derivatives
   WorkspaceResults<double> workspaces;
   WorkspaceResults<Dual4> dual_workspaces;
   MachineValues machines;        ///< values of all machines built to the design that was evaluated last

@@ -33,8 +33,8 @@ void DesignProblem::evaluate_machine(std::span<const double> parameters, std::op
   };
   for (std::size_t i = 0; i < objectives.size(); ++i) objectives[i] = value(parts_.objectives[i]);
   for (const auto& q : parts_.workspace_margins) {
-    // If a study with a yield has a robust constraint, its quantity is also an objective of BuiltMachines::problem,
-    // whose value is known here.
+    // The quantity of a robust constraint is, in a study with a yield, also an objective of BuiltMachines::problem. Its
+    // value has then been computed above.
     const auto same = std::ranges::find(parts_.objectives, q.quantity, &NamedQuantity::quantity);
     const bool is_known = same != parts_.objectives.end();
     margins[margin++] =

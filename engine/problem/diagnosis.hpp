@@ -10,7 +10,7 @@
 
 namespace pkm {
 
-/// One reason of a diagnosis, or one contradiction.
+/// One reason why a study has no useful design, or one contradiction between its requirements.
 struct Reason {
   std::string kind;                ///< "contradiction", "constraint", "limit" (of a pose) or "failure"
   std::vector<std::string> names;  ///< names of the constraints, limits or coordinates concerned

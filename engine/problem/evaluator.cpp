@@ -98,7 +98,8 @@ double mean_seconds(const EvaluationTable& table, std::size_t first) {
   return sample > 0 ? sum / static_cast<double>(sample) : 0;
 }
 
-// Rows [first, end) that a rank evaluates if `count` rows, from row `first` on, are distributed statically by index.
+// Rows [first, end) that an MPI rank evaluates if `count` rows, from row `first` on, are distributed statically by
+// index.
 std::pair<std::size_t, std::size_t> static_share(std::size_t rank, std::size_t ranks, std::size_t first,
                                                  std::size_t count) {
   return {first + rank * count / ranks, first + (rank + 1) * count / ranks};
@@ -148,8 +149,8 @@ void ParallelEvaluator::evaluate(const Problem& problem, EvaluationTable& table,
 
 void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows,
                                       double design_seconds) {
-  // Minimum times [s]: a shorter batch is faster on one thread, and a longer design is worth evaluating on several
-  // threads.
+  // Times [s]: a batch that takes less than kMinBatchTime is faster on one thread; a single design that takes longer
+  // than kMinDesignTime is evaluated faster by several threads.
   constexpr double kMinBatchTime = 5e-6, kMinDesignTime = 200e-6;
   const auto [first, end] = rows;
   const std::size_t count = end - first;
@@ -176,8 +177,8 @@ void ParallelEvaluator::evaluate_here(const Problem& problem, EvaluationTable& t
   complete_rows(problem, table, {rows});
 }
 
-// Claims chunks of rows from the counter shared by all ranks and evaluates them, until all rows are claimed. Returns
-// the rows that this rank has evaluated.
+// Claims chunks of rows from the counter shared by all MPI ranks and evaluates them, until all rows are claimed.
+// Returns the rows that this rank has evaluated.
 std::vector<ParallelEvaluator::Rows> ParallelEvaluator::claim_chunks(const Problem& problem, EvaluationTable& table,
                                                                      Rows rows) {
   const std::size_t threads = std::accumulate(threads_of_ranks_.begin(), threads_of_ranks_.end(), std::size_t{0});
@@ -204,7 +205,7 @@ std::vector<ParallelEvaluator::Rows> ParallelEvaluator::claim_chunks(const Probl
   return all;
 }
 
-// Compares a row that every rank has evaluated: all ranks must compute the same bits, otherwise the run is aborted.
+// Compares a row that every MPI rank has evaluated: all ranks must compute the same bits, otherwise the run is aborted.
 // The ranks also exchange their numbers of threads.
 void ParallelEvaluator::compare_ranks(const EvaluationTable& table, std::size_t row) {
   const std::uint64_t own[2] = {hash_of_rows(table, row, row + 1), static_cast<std::uint64_t>(threads_)};
@@ -246,7 +247,7 @@ void ParallelEvaluator::evaluate_with_ranks(const Problem& problem, EvaluationTa
     for (std::size_t at = 0; at < each.size();) received += unpack_rows(each, at, table);
   PKM_EXPECTS(received == table.size() - first);
 
-  // All ranks have received the evaluation times of all rows: from here on every rank computes the same timings.
+  // All MPI ranks have received the evaluation times of all rows: from here on every rank computes the same timings.
   const auto seconds_of = [&](Rows of) {
     return std::accumulate(table.seconds.begin() + static_cast<std::ptrdiff_t>(of.first),
                            table.seconds.begin() + static_cast<std::ptrdiff_t>(of.second), 0.0);

@@ -37,23 +37,24 @@ class Evaluator {
 /// evaluated by every rank without communication.
 class ParallelEvaluator final : public Evaluator {
  public:
-  /// @param threads  number of threads as for team_size(); within with_team(), 1 or the size of the team
+  /// @param threads  number of threads; 0: OpenMP's default (see team_size()); within with_team(), 1 or the size of the
+  ///   team
   explicit ParallelEvaluator(int threads = 0)
       : threads_(team_size(threads)), scratch_(static_cast<std::size_t>(threads_)) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
   int threads() const { return threads_; }
 
  private:
-  /// Timings of the latest batch that was distributed among ranks. They are identical on every rank, so that all ranks
-  /// choose the same distribution.
+  /// Timings of the latest batch that was distributed among MPI ranks. They are identical on every rank, so that all
+  /// ranks choose the same distribution.
   struct BatchTimings {
-    double seconds_per_design = 0;  ///< mean evaluation time in the latest batch shared by ranks [s]; 0: none
+    double seconds_per_design = 0;  ///< mean evaluation time in the latest batch shared by MPI ranks [s]; 0: none
     bool imbalanced = true;         ///< true: the next batch is distributed dynamically
     std::size_t local_batches = 0;  ///< batches since the latest shared one, which every rank evaluated itself
   };
   using Rows = std::pair<std::size_t, std::size_t>;  // first row, end row (excluded)
 
-  /// Evaluates rows on this rank, with one or several threads.
+  /// Evaluates rows on this MPI rank, with one or several threads.
   /// @param design_seconds  expected time per design on one thread [s]; 0: unknown
   void evaluate_here(const Problem& problem, EvaluationTable& table, Rows rows, double design_seconds);
   void evaluate_with_ranks(const Problem& problem, EvaluationTable& table, std::size_t first, BatchTimings& timings);

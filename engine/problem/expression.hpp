@@ -41,7 +41,8 @@ struct AnalysisResult {
 /// The volume and the statistics of all pose quantities of a mechanism.
 std::vector<AnalysisResult> analysis_results(const MechanismInfo& info);
 
-/// All names that expressions of a mechanism may use, except `pi` and the functions, which every formula has.
+/// All names that expressions of a mechanism may use, except `pi` and functions such as `sin`, which are available in
+/// every formula.
 std::vector<ExpressionName> expression_names(const Mechanism& mechanism, const WorkspacePlan& plan);
 
 /// The options that all catalogue entries with an expression share.

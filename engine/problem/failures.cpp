@@ -8,10 +8,10 @@ namespace pkm {
 namespace {
 
 constexpr std::size_t kMaxExamined = 64;
-// Maximum sum of the first evaluation times of the designs that are evaluated again [s].
+// Evaluating failed designs again ends once their recorded evaluation times add up to more than this [s].
 constexpr double kMaxSeconds = 1;
 
-/// Replaces each number of a reason by "#", except numbers within names ("l_11").
+/// Replaces each number in the reason of a failure by "#", except numbers within names ("l_11").
 std::string mask_numbers(const std::string& reason) {
   const std::string digits = "0123456789";
   std::string text;

@@ -17,7 +17,7 @@ struct FailureReason {
 
 struct Failures {
   std::size_t evaluations = 0, failed = 0;
-  std::size_t examined = 0;            ///< failed designs that were evaluated again
+  std::size_t examined = 0;            ///< number of failed designs that were evaluated again
   std::vector<FailureReason> reasons;  ///< reasons of the examined designs, the most frequent first
 };
 

@@ -98,7 +98,8 @@ std::vector<std::size_t> knees(const Scores& front) {
     for (std::size_t i = 0; i < front.size(); ++i)
       if (extent.range(k) > 0 && scaled[i][k] == 0) extreme_cost = std::min(extreme_cost, cost[i]);
   for (std::size_t i = 0; i < order.size() && cost[order[i]] < extreme_cost - kMinGain; ++i) {
-    // Search the cheaper designs backwards: those of similar cost are the most likely to be within kRadius.
+    // Search the designs of lower cost in descending order of cost: those of similar cost are the most likely to be
+    // within kRadius.
     const auto near = [&](std::size_t cheaper) { return distance(scaled, cheaper, order[i]) <= kRadius; };
     if (std::none_of(order.rend() - static_cast<std::ptrdiff_t>(i), order.rend(), near)) found.push_back(order[i]);
   }

@@ -12,14 +12,14 @@
 namespace pkm {
 
 /// A Pareto front: the feasible non-dominated designs of a stage, up to the size limit of the archive. In a solver
-/// stage, the designs are results of its starts.
+/// stage, the designs are results of its multistart runs.
 struct Front {
-  std::vector<std::int64_t> rows;  ///< rows of the stage's table, sorted by the first objective, best first
+  std::vector<std::int64_t> rows;  ///< rows of the evaluation table, sorted by the first objective, best first
   /// Reference point of the hypervolume, in the objectives' units, and the hypervolume. Only designs that are better
   /// than the reference point in every objective contribute. Empty and NaN if there is no reference point yet.
   std::vector<double> reference = {};
   double hypervolume = std::numeric_limits<double>::quiet_NaN();
-  /// Spacing of those designs of the front that are in the population (crowding.hpp); NaN: unknown.
+  /// Spacing indicator (crowding.hpp) of those designs of the front that are in the population; NaN: unknown.
   double spread = std::numeric_limits<double>::quiet_NaN();
   double igd_plus = std::numeric_limits<double>::quiet_NaN();  ///< distance IGD+ to the known reference front; NaN if
                                                                ///< there is no reference front
@@ -36,7 +36,7 @@ struct Scores {
   void clear() { values.clear(); }
 };
 
-/// Appends the objectives of a table row as scores: maximised objectives change their sign.
+/// Appends the objectives of a row of an evaluation table as scores: maximised objectives change their sign.
 void add_scores(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table, std::size_t row,
                 Scores& scores);
 Scores scores_of(const std::vector<ObjectiveInfo>& objectives, const EvaluationTable& table,

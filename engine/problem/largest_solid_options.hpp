@@ -9,7 +9,7 @@ namespace pkm {
 
 std::vector<OptionSpec> largest_solid_options(SolidKind kind);
 
-/// True if the quantity is the solid's first dimension; false if it is the volume.
+/// True if the quantity is the solid's first dimension (edge or diameter); false if it is the volume.
 /// @param options  values of largest_solid_options()
 bool measures_size(const Options& options);
 

@@ -29,9 +29,9 @@ class MarginTally {
     std::string name;
     std::size_t known = 0, satisfied = 0;
     double closest = 0;  ///< maximum of the negative values of the margin, i.e. the smallest violation
-    /// For each earlier margin, the number of samples in which both margins are known.
+    /// For each margin with a lower index in `counts_`, the number of samples in which both margins are known.
     std::vector<std::size_t> known_with = {};
-    /// For each earlier margin, the number of samples that satisfy both margins.
+    /// For each margin with a lower index in `counts_`, the number of samples that satisfy both margins.
     std::vector<std::size_t> satisfied_with = {};
   };
   /// Index of a margin in `counts_`; added if it is new.

@@ -75,14 +75,14 @@ class SampledMotion {
   std::size_t size() const { return samples_.size(); }
   Unsupported why_no_derivatives() const { return named_.of_design ? named_.why_no_derivatives : Unsupported(); }
 
-  /// The samples of a design; they are valid until the next call with the same scratch memory.
+  /// The samples of the motion for a design; they are valid until the next call with the same scratch memory.
   std::span<const MotionSample> of(const DesignView<double>& design) const {
     if (!named_.of_design) return samples_;
     auto& samples = design.scratch.template get<std::vector<MotionSample>>();
     return samples = sample(*named_.of_design(design.parameters), samples_.size());
   }
-  /// Calls work(samples) with the samples of a design: std::span<const MotionSample> or, if they have derivatives,
-  /// std::span<const DualMotionSample>.
+  /// Calls work(samples) with the samples of the motion for a design: std::span<const MotionSample> or, if they have
+  /// derivatives, std::span<const DualMotionSample>.
   template <class Work>
   auto with(const DesignView<double>& design, const Work& work) const {
     return work(of(design));

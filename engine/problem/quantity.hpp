@@ -72,7 +72,7 @@ std::unique_ptr<const Quantity> make_quantity(F function) {
   return make_quantity(function, function);
 }
 
-/// A quantity without derivatives.
+/// Creates a quantity without derivatives from a function of a DesignView<double>.
 template <class F>
 std::unique_ptr<const Quantity> make_quantity_without_derivatives(F function, const std::string& why_no_derivatives) {
   const auto none = [why_no_derivatives](const DesignView<Dual4>&) -> Dual4 {
@@ -88,7 +88,7 @@ struct Region {
   FieldRequest request;  ///< fields of the workspace analysis that the quantities of the region need
 };
 
-/// Input of a catalogue entry when a study uses it.
+/// Data of a study from which a catalogue entry (objective, constraint) creates a quantity.
 struct EntryContext {
   const Mechanism& mechanism;
   const WorkspacePlan& plan;  ///< plan of the workspace analysis that the entry uses

@@ -10,7 +10,8 @@
 
 namespace pkm {
 
-/// Sort key of one table row. Total order: by status, then by value, then by row (earlier evaluations first).
+/// Sort key of one row of an evaluation table. Total order: by status, then by value, then by row (earlier evaluations
+/// first).
 struct RankKey {
   Status status = Status::failed;
   double value = 0;  ///< minimised: the first objective of a feasible design, otherwise the total violation

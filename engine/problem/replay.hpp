@@ -12,7 +12,8 @@
 
 namespace pkm {
 
-/// The optimiser requests another design than the recorded one: the record belongs to another study or program version.
+/// Exception: the optimiser requests another design than the recorded one, so that the record belongs to another study
+/// or program version.
 class ReplayMismatch : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,7 +22,7 @@ class ReplayMismatch : public std::runtime_error {
 class ReplayEvaluator final : public Evaluator {
  public:
   /// @param inner   computes the rows that are not recorded; must outlive this object
-  /// @param record  the stored table of the stage; must outlive this object
+  /// @param record  the recorded evaluation table of the stage; must outlive this object
   ReplayEvaluator(Evaluator& inner, const EvaluationTable& record) : inner_(inner), record_(record) {}
 
   /// Copies each recorded row r, including its time, to row r of `table`, and evaluates the rows that are not recorded.

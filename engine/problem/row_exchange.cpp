@@ -37,7 +37,8 @@ void read_text(const std::string& bytes, std::size_t& at, std::string& text) {
   at += size;
 }
 
-/// Calls action(array, count) for each array of results of a table, where `count` is the number of elements per row.
+/// Calls action(array, count) for each array of results of an evaluation table, where `count` is the number of elements
+/// per row.
 template <class Table, class Action>
 void for_each_result(Table& table, const Action& action) {
   const EvaluationShape shape = table.shape();

@@ -11,8 +11,8 @@ namespace pkm {
 /// Appends the results of `count` rows from row `first` on, without their designs, to `bytes`.
 void pack_rows(const EvaluationTable& table, std::size_t first, std::size_t count, std::string& bytes);
 
-/// Reads rows written by pack_rows(), from byte `at` on, into a table of the same shape. Returns the number of rows and
-/// advances `at` past them.
+/// Reads rows written by pack_rows(), from byte `at` on, into an evaluation table of the same shape. Returns the number
+/// of rows and advances `at` past them.
 std::size_t unpack_rows(const std::string& bytes, std::size_t& at, EvaluationTable& table);
 
 /// Appends a multistart run with its designs to `bytes`.

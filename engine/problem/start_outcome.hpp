@@ -25,7 +25,7 @@ enum class StopReason {
 /// The reason in words, for the terminal and the study file: "generation limit", ...
 std::string_view words(StopReason reason);
 
-/// Outcome of one multistart run of a solver. Row numbers refer to the stage's table.
+/// Outcome of one multistart run of a solver. Row numbers refer to the evaluation table of the stage.
 struct StartOutcome {
   std::string origin;          ///< origin of the starting point: "best so far", "Sobol point 3"
   std::int64_t first_row = 0;  ///< row of the run's first evaluation, i.e. of the starting point
@@ -38,7 +38,8 @@ struct StartOutcome {
 };
 
 /// A multistart run whose evaluations are buffered. The runs are concurrent, but their evaluations are appended to the
-/// stage's table in start order. The evaluations of a run are therefore buffered until every earlier run has ended.
+/// evaluation table of the stage in start order. The evaluations of a run are therefore buffered until every earlier
+/// run has ended.
 struct UnmergedRun {
   std::int64_t number = 0;              ///< index of the run in its stage, from 0
   EvaluationTable table;                ///< evaluations of the run so far

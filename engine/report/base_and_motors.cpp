@@ -6,8 +6,8 @@
 namespace pkm {
 namespace {
 
-constexpr double kMotorRadius = 2.2;  // relative to the largest radius of the links
-constexpr double kMotorLength = 3;    // half of it, relative to the radius of the motor
+constexpr double kMotorRadius = 2.2;  // radius of a motor, relative to the largest radius of the links
+constexpr double kMotorLength = 3;    // half of the length of a motor, relative to its radius
 constexpr double kSamePlace = 1e-9;   // ends whose distance is smaller [m] have the same position
 
 Point3<double> moved(Point3<double> point, const Point3<double>& direction, double distance) {

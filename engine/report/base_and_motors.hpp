@@ -18,7 +18,7 @@ class DrawnMotors {
   /// @param mechanism  must outlive this object; without DesignFacts there are no motors
   /// @param mode       one of MechanismInfo::modes
   DrawnMotors(const Mechanism& mechanism, std::span<const double> parameters, const std::string& mode);
-  /// Appends the motors at a pose to its links, which must not be empty. Thread-safe.
+  /// Appends the motors at a pose to `links`, the links at this pose, which must not be empty. Thread-safe.
   void append(const Pose<double>& pose, std::vector<PlacedLink>& links) const;
 
  private:
@@ -27,8 +27,9 @@ class DrawnMotors {
   std::vector<std::optional<std::array<double, 2>>> ranges_;
 };
 
-/// Appends a base to the links at every pose: a polygon through the link ends that have the same position at all poses,
-/// if the mechanism has no links of the frame and there are at least two such ends.
+/// Appends a base to the links at every pose: a polygon through those link ends that have the same position at all
+/// poses. Does nothing if the mechanism already has links of the frame, or if there are fewer than two poses or such
+/// ends.
 /// @param poses  the links at each pose, in the same order for every pose
 void append_base(const std::vector<std::vector<PlacedLink>*>& poses);
 

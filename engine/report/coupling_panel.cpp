@@ -10,8 +10,8 @@
 namespace pkm {
 namespace {
 
-// If the study fixes the rotation, the workspace is analysed at several values of the rotation, with the following
-// numbers.
+// If the study fixes the rotation of the platform, the workspace is analysed at several values of this rotation, with
+// the following numbers of voxels and values.
 constexpr std::int64_t kCellsPerAxis = 16;   // number of voxels along each swept axis
 constexpr std::size_t kFixedRotations = 13;  // number of values of the rotation
 
@@ -21,7 +21,7 @@ struct CouplingByRotation {
   std::vector<WorkspaceResult<double>> surveys;
 };
 
-/// If the study sweeps the rotation: groups the cells of the workspace by the value of the rotation.
+/// If the study sweeps the rotation of the platform: groups the cells of the workspace by the value of the rotation.
 CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size_t axis, std::size_t limbs) {
   CouplingByRotation result;
   const VoxelGrid grid = workspace.grid();
@@ -39,8 +39,8 @@ CouplingByRotation group_by_rotation(const WorkspaceFields& workspace, std::size
   return result;
 }
 
-/// If the study fixes the rotation: analyses the workspace on coarse voxels at several values of the rotation,
-/// within the range of it in which poses are feasible.
+/// If the study fixes the rotation of the platform: analyses the workspace on coarse voxels at several values of the
+/// rotation, within that range of the rotation in which poses are feasible.
 /// @param fixed  index of the rotation in WorkspaceFields::fixed
 CouplingByRotation analyse_at_rotations(const ShownDesigns& shown, const ShownDesign& design, std::size_t fixed) {
   CouplingByRotation result;
@@ -63,7 +63,7 @@ CouplingByRotation analyse_at_rotations(const ShownDesigns& shown, const ShownDe
   return result;
 }
 
-/// Coupling indices over a rotation, whether the study sweeps or fixes it.
+/// Coupling indices over a rotation of the platform, which the study either sweeps or fixes.
 /// @param rotation  index of the rotation in MechanismInfo::coordinates
 CouplingByRotation coupling_by_rotation(const ShownDesigns& shown, const ShownDesign& design, int rotation) {
   const WorkspaceFields& workspace = *design.workspace;

@@ -31,7 +31,8 @@ int preference(const std::vector<PlacedLink>& links, std::size_t from, std::size
 std::vector<Dimension> dimensions_of(const Mechanism& mechanism, std::span<const double> parameters,
                                      const Pose<double>& pose, const std::string& mode) {
   constexpr double kRelativeStep = 1e-4;  // step of the forward differences, relative to the parameter
-  // Derivatives that differ from 0 or 1 by less than this do so because of truncation errors.
+  // Derivatives of distances that differ from 0 or 1 by less than this are regarded as 0 or 1, because forward
+  // differences have truncation errors.
   constexpr double kTolerance = 1e-2;
   const auto& infos = mechanism.info().parameters;
   const std::vector<PlacedLink> links = mechanism.links()->place(parameters, pose, mode);

@@ -29,10 +29,11 @@ struct PageAssets {
   std::string_view script;
   std::string_view plotly;
 };
-/// Returns the embedded files. Throws std::runtime_error if the library was built without them.
+/// Returns the files of the HTML page that are embedded in the library. Throws std::runtime_error if it was built
+/// without them.
 PageAssets page_assets();
 
-/// Text of the complete page. Throws std::runtime_error like page_assets().
+/// Text of the complete page. Throws std::runtime_error if the library was built without the files of the page.
 /// @param data  result of page_data()
 std::string html_page(const std::string& data);
 

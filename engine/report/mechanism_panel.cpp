@@ -129,7 +129,7 @@ Json motion_poses(const ShownDesigns& shown, const ShownDesign& design, const st
 struct LinkEnds {
   std::size_t count = 0;
   std::vector<std::size_t> from, to;  ///< numbers of the two ends of each link
-  /// x, y and z of all ends at the first pose that can be assembled, followed by those at the next one.
+  /// x, y and z of all link ends at the first pose that can be assembled, followed by those at the next such pose.
   std::array<std::vector<double>, 3> positions;
 
   explicit LinkEnds(const std::vector<DrawnPose>& poses) {
@@ -159,7 +159,7 @@ struct LinkEnds {
 /// Number of the pose that is shown first: the feasible pose that is nearest, in slider positions, to the mean of the
 /// feasible poses. If none is feasible: the pose that can be assembled and is nearest to the first position of every
 /// slider.
-/// @param poses  one pose for each combination of slider positions, see grid_poses()
+/// @param poses  one pose for each combination of slider positions, in the order of grid_poses()
 std::size_t initial_pose(std::span<const DrawnPose> poses, const Sliders& sliders) {
   std::vector<double> sum_of_steps(sliders.size());
   double count = 0;

@@ -147,7 +147,8 @@ Json motions_data(const ShownDesigns& shown) {
       if (!design.workspace) continue;
       const auto motion = named.at(design.parameters);
       Json of_design = design_along(shown, design, *motion);
-      // Motions that depend on the design have durations of their own, and a panel has one time axis.
+      // A motion that depends on the design gets an entry for each design: its durations differ, and an entry has one
+      // time axis.
       if (named.of_design) motions.push_back(entry(named.name + " of " + design.name, *motion));
       (named.of_design ? motions.back() : json)["designs"].push_back(std::move(of_design));
     }

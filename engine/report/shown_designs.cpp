@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kFrontDesigns = 10;
 constexpr PageDetail kFrontDetail = {16, 5, 3, false};  // resolution at which the front designs are sampled
 
-/// The plan of the study with voxels, at most max_cells along each axis.
+/// A plan of voxels for the workspace of a study's plan, with at most max_cells along each axis.
 WorkspacePlan page_plan(const MechanismInfo& info, const WorkspacePlan& plan, std::int64_t max_cells) {
   WorkspacePlan picture = visualisation_plan(info, plan, {max_cells, max_cells, max_cells});
   for (std::int64_t& cells : std::get<VoxelOptions>(picture.method).cells) cells = std::min(cells, max_cells);

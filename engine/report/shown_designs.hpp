@@ -15,7 +15,7 @@ namespace pkm {
 /// A study that a page shows.
 struct PageStudy {
   std::string file;        ///< name of the study file
-  StudyContents contents;  ///< everything in the file
+  StudyContents contents;  ///< contents of the study file
   /// The study built from the text in the file; std::nullopt if this program cannot read the text.
   std::optional<Study> study;
   std::string unreadable = {};  ///< the reason why this program cannot read the text; "" if it can
@@ -55,7 +55,7 @@ struct PageDetail {
 struct ShownDesigns {
   const Mechanism& mechanism;
   WorkspacePlan plan;                 ///< plan of the workspace analysis: voxels, limited by `detail`
-  LimitSpec limits;                   ///< limits of poses
+  LimitSpec limits;                   ///< limits that a pose must satisfy to be feasible
   std::string mode;                   ///< working mode
   std::vector<DesignMotion> motions;  ///< the first motions of the study, limited by the size of a page
   std::size_t omitted_motions = 0;    ///< number of motions of the study that are not shown

@@ -40,7 +40,7 @@ std::size_t find_stage(const StudyContents& contents, const DesignChoice& choice
   return std::stoul(stage) - 1;
 }
 
-/// Throws ConfigError if the choice is ambiguous or incomplete.
+/// Throws ConfigError if the options that select a design (--front, --generation ..) select two, or are incomplete.
 void check_choice(const DesignChoice& choice) {
   const bool of_generation = choice.generation || choice.individual;
   if (choice.baseline + of_generation + choice.front.has_value() > 1)

@@ -7,7 +7,8 @@
 
 namespace pkm {
 
-/// The name of the row that a value of a variable selects; "" if the variable is a number.
+/// The name of the catalogue row that a value of a variable selects; "" if the variable is not a choice from a
+/// catalogue.
 std::string choice_name(const ProblemRecord& problem, std::size_t variable, double value);
 
 }  // namespace pkm

@@ -9,7 +9,8 @@
 namespace pkm {
 namespace {
 
-/// Whether the final designs of two starts are the same optimum: equal in every variable to 1/1000 of its range.
+/// Whether the final designs of two multistart runs are the same optimum: equal in every variable to 1/1000 of its
+/// range.
 bool same_optimum(const ProblemRecord& problem, const StageRecord& stage, std::size_t a, std::size_t b) {
   const auto p = stage.table.design(static_cast<std::size_t>(stage.starts[a].end_row));
   const auto q = stage.table.design(static_cast<std::size_t>(stage.starts[b].end_row));

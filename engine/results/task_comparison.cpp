@@ -105,7 +105,8 @@ std::vector<TaskBox> boxes_of(const Task& task, const std::vector<TaskEvaluation
   return boxes;
 }
 
-/// Middle of the ranges of the first region or, along axes that it does not name, of the motions.
+/// For each axis, the middle of the box of the first region or, if the region does not name the axis, of the range over
+/// which the motions extend.
 std::array<double, 3> middle_of(const TaskComparison& comparison) {
   std::array<double, 3> middle{};
   for (std::size_t axis = 0; axis < comparison.axes.size(); ++axis) {
@@ -127,7 +128,8 @@ std::array<double, 3> middle_of(const TaskComparison& comparison) {
 }
 
 /// Computes the values of a robot along a motion, and appends the lines of the comparison for this motion.
-/// @param named  null if the robot refuses the motion, see `why_refused`
+/// @param named        null if the robot does not support the motion, for example because it lacks a coordinate
+/// @param why_refused  the reason why the robot does not support the motion
 TaskMotion compute_motion(const TaskComparison& comparison, const Task& task, const TaskEvaluation& evaluation,
                           const std::string& name, const DesignMotion* named, const std::string& why_refused,
                           ComparedRobot& robot) {
@@ -165,8 +167,8 @@ TaskMotion compute_motion(const TaskComparison& comparison, const Task& task, co
 }
 
 /// Appends the lines of the comparison for a region to the values of a robot: those in `evaluation` and, computed here,
-/// the largest scale of the region.
-/// @param region  null if the robot refuses the region
+/// the largest factor by which the region can be scaled.
+/// @param region  null if the robot does not support the region, for example because it lacks a coordinate
 void append_region(const TaskEvaluation& evaluation, const std::string& name, const Region* region,
                    ComparedRobot& robot) {
   for (TaskValue line : evaluation.values) {

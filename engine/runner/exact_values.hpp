@@ -15,7 +15,7 @@ namespace pkm {
 
 class ExactValues {
  public:
-  static constexpr const char* kNoValues = "no exact values of the ";  ///< beginning of the notes that evaluate() adds
+  static constexpr const char* kNoValues = "no exact values of the ";  ///< beginning of the notes of evaluate()
 
   /// @param parts  problem of the voxel study; must outlive this object
   explicit ExactValues(const ProblemParts& parts);

@@ -19,7 +19,7 @@ void check_limit(const Stage& stage, const std::string& limit, double value) {
 /// Number of evaluations made, as the stage's evaluation limit counts them: all evaluations of the stage or, in a
 /// solver stage, where the limit applies to each multistart run, those of the longest run.
 double evaluations_done(const StageRecord& stage) {
-  // The rows of the table after those of all finished multistart runs belong to the unfinished run.
+  // The rows of the evaluation table after those of all finished multistart runs belong to the unfinished run.
   auto count = static_cast<std::int64_t>(stage.table.size());
   if (!stage.starts.empty()) count -= stage.starts.back().first_row + stage.starts.back().rows;
   for (const StartOutcome& start : stage.starts) count = std::max(count, start.rows);

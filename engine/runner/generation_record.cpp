@@ -15,8 +15,8 @@ double diversity(const DesignSpace& space, const EvaluationTable& table, const R
   if (population.empty() || space.dimension() == 0) return 0;
   const std::size_t members = population.size(), dimension = space.dimension();
   const auto n = static_cast<double>(members);
-  // Values of the members, one variable after the other; a contiguous copy, because the rows of the table are
-  // scattered.
+  // Unit coordinates of all members, one variable after the other: a contiguous copy, because the rows of the
+  // evaluation table are far apart in memory.
   std::vector<double> units(members * dimension);
   const auto gather = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -13,11 +13,11 @@ std::string describe_processor();
 std::string describe_machine();
 
 /// Text such as "2 threads" or "4 ranks x 16 threads".
-/// @param threads        number of threads of this rank
+/// @param threads        number of threads of this MPI rank
 /// @param total_threads  number of threads of all ranks together
 std::string describe_team(int threads, int total_threads);
 
-/// Names of the hosts of all ranks, for example "node1, node2".
+/// Names of the hosts of all MPI ranks, for example "node1, node2".
 std::string describe_hosts();
 
 /// Current time in the form of ISO 8601 in UTC, for example "2026-01-31T12:00:00Z".

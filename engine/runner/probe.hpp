@@ -24,7 +24,8 @@ struct Probe {
 /// the result is the same on all machines.
 std::size_t probe_size(const DesignProblem& problem);
 
-/// Evaluates probe_size() scrambled Sobol points of the design space, chosen by the study's seed, until the time limit.
+/// Evaluates a small number, probe_size(), of scrambled Sobol points of the design space, chosen by the study's seed,
+/// until the time limit.
 Probe probe(const Study& study);
 
 /// Text such as "23 of 64 designs spread over the bounds are feasible".

@@ -10,7 +10,7 @@
 
 namespace pkm {
 
-/// Starts worker processes for the functions of a study; does nothing if it calls none or if they are connected
+/// Starts worker processes for the functions of a study; does nothing if the study calls none or if they are connected
 /// already. The file of a function is searched for relative to each of the `folders`, in this order. Throws ConfigError
 /// if there is no such file or it does not define the function, StorageError if the file has changed, and Stopped after
 /// a stop request.

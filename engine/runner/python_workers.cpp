@@ -179,8 +179,8 @@ class PythonWorkers::Batch {
   Batch(std::size_t function, std::span<const double> parameters, std::span<ExternalValue> values, const Setup& setup)
       : function_(function), parameters_(parameters), values_(values), setup_(setup) {}
 
-  /// Evaluates the batch. Starts the processes that are missing. If it throws Stopped, the processes that were busy
-  /// have been ended.
+  /// Evaluates the batch. Starts a process for each element of `processes` that is null and needed. If it throws
+  /// Stopped, the processes that were busy have been ended.
   void evaluate(std::vector<std::unique_ptr<Process>>& processes) {
     const std::size_t count = values_.size();
     const std::size_t size = std::max<std::size_t>(1, count / (kChunksPerWorker * processes.size()));

@@ -24,8 +24,9 @@ ProblemRecord problem_record(const Study& study);
 /// @param changes  changes to be applied to the study
 Study study_of(const StudyContents& contents, const Catalogues& catalogues, const StudyChanges& changes = {});
 
-/// Rebuilds the study of a study file in order to resume it. Throws StorageError also if recorded values differ from
-/// those that the study's text gives.
+/// Rebuilds the study of a study file in order to resume it. Throws StorageError if the recorded problem or any
+/// recorded value differs from that which the study's text gives, or if the text was changed after the study was
+/// started.
 /// @param path  path of the file, for messages
 Study study_to_continue(const StudyContents& contents, const std::string& path, const Catalogues& catalogues);
 

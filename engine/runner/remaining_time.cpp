@@ -16,8 +16,8 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// A table of sample designs that are not yet evaluated: the centre of the design space and, if there is one, the
-/// baseline.
+/// An evaluation table of sample designs that are not yet evaluated: the centre of the design space and, if there is
+/// one, the baseline.
 EvaluationTable sample_designs(const Study& study, Detail detail) {
   const DesignProblem& problem = *study.problem;
   EvaluationTable table(problem.shape(detail));

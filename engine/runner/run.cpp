@@ -50,7 +50,7 @@ void Run::begin() {
 RunOutcome Run::operator()() {
   for (const std::string& each : ranks::all_gather(std::to_string(evaluator_.threads()))) threads_ += std::stoi(each);
   RunOutcome result;
-  // With several ranks, evaluations are not aborted, because the other ranks would wait for them.
+  // With several MPI ranks, evaluations are not aborted, because the other ranks would wait for them.
   std::optional<StopScope> stop;
   if (ranks::size() == 1) stop.emplace([this] { return is_grace_period_over(); });
   try {

@@ -26,12 +26,12 @@ namespace pkm {
 class Run final : public Monitor {
  public:
   /// @param contents  contents of the study file so far, which the run replays and continues
-  /// @param output    output file on rank 0; null on worker ranks, which write nothing
+  /// @param output    output file on MPI rank 0; null on worker ranks, which write nothing
   Run(const Study& study, StudyContents contents, StudyOutput* output, const RunOptions& options, Progress& progress);
 
   /// Writes the file of a new study, before its first evaluation.
   void begin();
-  /// Runs the stages with one team of threads. Collective: all ranks must call it. Throws StorageError,
+  /// Runs the stages with one team of threads. Collective: all MPI ranks must call it. Throws StorageError,
   /// UnwrittenOutcome and ReplayMismatch.
   RunOutcome operator()();
 
@@ -50,13 +50,13 @@ class Run final : public Monitor {
   /// stages.
   void update_best(const EvaluationTable& table, std::int64_t row);
 
-  /// Rank 0 only: reports progress, checks for stop requests and writes a checkpoint if one is due.
+  /// MPI rank 0 only: reports progress, checks for stop requests and writes a checkpoint if one is due.
   void process_generation(const Generation& generation);
-  /// Sends rank 0's decision whether to stop to all ranks, and verifies that all ranks have the same evaluations.
+  /// Sends MPI rank 0's decision whether to stop to all ranks, and verifies that all ranks have the same evaluations.
   void synchronise_ranks(const Generation& generation);
   ProgressReport progress_report(const Generation& generation);
 
-  /// Rank 0 only: computes the final results unless the run is stopped, writes the file and returns the outcome.
+  /// MPI rank 0 only: computes the final results unless the run is stopped, writes the file and returns the outcome.
   RunOutcome complete();
   /// @return an outcome that contains only the statistics on evaluations, parallel efficiency and messages
   RunOutcome statistics() const;
@@ -91,18 +91,18 @@ class Run final : public Monitor {
   std::int64_t made_ = 0;   ///< number of new evaluations in this run up to the last generation
   /// Function that returns a solver stage's multistart runs that are not yet merged; empty in other stages.
   std::function<std::vector<UnmergedRun>()> ahead_;
-  bool replaying_;  ///< true as long as all results are already recorded in the study file
+  bool replaying_;  ///< true as long as all evaluations of this run were recorded by earlier runs
   /// Number of rows that belong to complete generations of the stage; std::nullopt while a generation is being
   /// recorded.
   std::optional<std::size_t> complete_rows_;
   std::string stopped_;         ///< reason for stopping the run; "": the run continues
-  std::exception_ptr failure_;  ///< on rank 0, the exception that ends the run on all ranks
-  bool failed_ = false;         ///< on every rank, true if an exception on rank 0 ends the run
+  std::exception_ptr failure_;  ///< on MPI rank 0, the exception that ends the run on all ranks
+  bool failed_ = false;         ///< on every MPI rank, true if an exception on rank 0 ends the run
   /// Time of the first stop request, counted from the start of this run [s].
   std::atomic<double> stop_requested_at_ = std::numeric_limits<double>::infinity();
-  std::optional<RemainingTime> remaining_;  ///< estimate of the remaining time; set on rank 0 only
-  int threads_ = 0;                         ///< number of threads of all ranks together
-  /// Time spent in messages between ranks before this run [s].
+  std::optional<RemainingTime> remaining_;  ///< estimate of the remaining time; set on MPI rank 0 only
+  int threads_ = 0;                         ///< number of threads of all MPI ranks together
+  /// Time spent in messages between MPI ranks before this run [s].
   double initial_exchange_ = ranks::communication_seconds();
   std::vector<std::string> warnings_;
 };

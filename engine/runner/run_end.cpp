@@ -13,7 +13,7 @@
 namespace pkm {
 namespace {
 
-/// Sentence about the parallel efficiency of a run with several ranks.
+/// Sentence about the parallel efficiency of a run with several MPI ranks.
 std::string ranks_note(const RunOutcome& outcome) {
   const auto percent = [](double share) { return std::to_string(std::lround(100 * share)) + " %"; };
   return std::to_string(outcome.evaluations) + " evaluations by " + outcome.team + " on " + describe_hosts() +

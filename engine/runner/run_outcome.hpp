@@ -21,20 +21,21 @@ namespace pkm {
 /// same version. To be increased with every change that alters the sequence of evaluations of a given seed.
 inline constexpr std::int64_t kAlgorithms = 10;
 
-/// Program version and arguments, which must be the same on all ranks.
+/// Program version and arguments, which must be the same on all MPI ranks.
 struct ProgramVersion {
   std::string version, revision;
   std::string arguments = {};  ///< command-line arguments as one line of text
 };
 
 struct RunOptions {
-  int threads = 0;  ///< number of threads of each rank, as for team_size(); 0: ranks::threads()
+  /// Number of threads of each MPI rank; 0: OMP_NUM_THREADS if it is set, otherwise the number of cores for the rank.
+  int threads = 0;
   /// Wall time of this run after which it stops with a checkpoint [s]; std::nullopt: unlimited.
   std::optional<double> time_limit;
   /// Function that returns true to stop the run with a checkpoint. It is called often, by any thread of the team. An
   /// empty function never stops.
   std::function<bool()> stop = {};
-  /// Called after each new generation, on rank 0, with the study as far as it has been computed; may be empty.
+  /// Called after each new generation, on MPI rank 0, with the study as far as it has been computed; may be empty.
   std::function<void(const StudyContents&, const ProgressReport&)> observer = {};
   /// True if SIGINT, SIGTERM and SIGHUP request a stop. False if pkmopt is used as a library, which must not change the
   /// signal handling of the process.
@@ -55,7 +56,7 @@ struct RunOutcome {
   double checkpoint_share = 0;        ///< share of the run time spent on checkpoints (first and final write excluded)
   double parallel_efficiency = 0;     ///< sum of the evaluation times / (number of threads * wall time of evaluating)
   std::string team;                   ///< number of threads as text, for example "2 threads" or "4 ranks x 16 threads"
-  double exchange_share = 0;          ///< share of the run time that rank 0 spent in messages, including waiting
+  double exchange_share = 0;          ///< share of the run time that MPI rank 0 spent in messages, including waiting
   std::vector<std::string> warnings;  ///< warnings for the user, one sentence each; they are also in the study file
 };
 

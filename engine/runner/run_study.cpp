@@ -16,8 +16,8 @@
 namespace pkm {
 namespace {
 
-/// Runs a study on rank 0, together with the worker ranks (see worker_ranks.hpp). If the first write of the study file
-/// fails, the worker ranks are not involved.
+/// Runs a study on MPI rank 0, together with the worker ranks (see worker_ranks.hpp). If the first write of the study
+/// file fails, the worker ranks are not involved.
 RunOutcome run_with_ranks(const Study& study, StudyContents contents, StudyOutput output, const RunOptions& options,
                           Progress& progress) {
   std::string message = run_message(contents, options);

@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-/// Number of best evaluations among which basins() searches.
+/// basins() estimates the basins of attraction from at most this number of best evaluations.
 constexpr std::size_t kMaxCandidates = 4000;
 
 StartDesign best_so_far(const Study& study, const StudyContents& contents) {

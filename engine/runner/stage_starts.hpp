@@ -10,8 +10,8 @@ namespace pkm {
 
 /// @return the starting points of a stage. A solver selects them by its option `start`:
 /// - "best" (default): the best design of the earlier stages;
-/// - "best-of-basins": the best designs that have no better design nearby, see basins() in stage_starts.cpp;
-/// - "pareto": points spread over the front of the last stage that has found one; if there is none, as "best";
+/// - "best-of-basins": the best designs that have no better design in a neighbourhood;
+/// - "pareto": points spread over the front of the last stage that has found one; if there is none, the best design;
 /// - "none": no designs of earlier stages.
 /// The designs given by the option `designs` are added to them. Other optimisers get the best design of the earlier
 /// stages. If nothing was evaluated before the stage, see first_start_designs().
@@ -30,8 +30,8 @@ std::vector<StartDesign> first_start_designs(const DesignSpace& space, const Sta
 std::vector<double> baseline_or_centre(const Study& study);
 
 /// The best designs of a study. If a stage has found a front: points spread over the last front, in its order.
-/// Otherwise the best designs that have no better design nearby, best first (see basins() in stage_starts.cpp). A
-/// design consists of the values of that study's variables.
+/// Otherwise the best designs that have no better design in a neighbourhood, best first. A design consists of the
+/// values of that study's variables.
 std::vector<StartDesign> distinct_best_designs(const StudyContents& contents, std::size_t limit);
 
 /// @return for several objectives: their ranges on the front found by earlier stages (or the objectives of the best

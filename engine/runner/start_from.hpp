@@ -21,10 +21,10 @@ struct StartFrom {
 };
 
 /// Chooses designs of `other` for the first stage of `study`: for a genetic algorithm at most half of the population,
-/// for a solver as many as it has starts, and one for any other optimiser. They are chosen by distinct_best_designs().
-/// A variable gets the value of the other study's parameter of the same name. If there is no such parameter, it gets
-/// the value of the baseline or, without a baseline, the centre of its range. Throws ConfigError if the other study has
-/// no variable in common with `study`, if units differ, or if it has no design.
+/// for a solver as many as it has multistart runs, and one for any other optimiser. They are chosen by
+/// distinct_best_designs(). A variable gets the value of the other study's parameter of the same name. If there is no
+/// such parameter, it gets the value of the baseline or, without a baseline, the centre of its range. Throws
+/// ConfigError if the other study has no variable in common with `study`, if units differ, or if it has no design.
 /// @param file  name of the other study's file, for messages
 /// Precondition: the study has a stage.
 StartFrom start_from(const Study& study, const StudyContents& other, const std::string& file);

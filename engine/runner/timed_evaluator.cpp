@@ -21,7 +21,7 @@ void TimedEvaluator::end_call(const EvaluationTable& table, std::size_t first) {
   change_active_calls(-1);
   const std::lock_guard guard(mutex_);
   made_ += static_cast<std::int64_t>(table.size() - first);
-  // If there is a single row, every rank evaluates it, instead of sharing rows.
+  // If there is a single row, every MPI rank evaluates it, instead of sharing rows.
   const int ranks = table.size() - first == 1 ? ranks::size() : 1;
   for (std::size_t row = first; row < table.size(); ++row) busy_ += ranks * static_cast<double>(table.seconds[row]);
 }

@@ -11,7 +11,7 @@ namespace pkm {
 
 class TimedEvaluator final : public Evaluator {
  public:
-  /// @param threads  number of threads, as for ParallelEvaluator
+  /// @param threads  number of threads; 0: OpenMP's default (see team_size())
   explicit TimedEvaluator(int threads) : inner_(threads) {}
   void evaluate(const Problem& problem, EvaluationTable& table, std::size_t first) override;
 

@@ -19,7 +19,7 @@
 namespace pkm {
 namespace {
 
-/// First byte of the messages by which rank 0 starts a run, or ends the worker ranks.
+/// First byte of the messages by which MPI rank 0 starts a run, or ends the worker ranks.
 constexpr char kRun = 'r', kQuit = 'q';
 
 /// The line of `text` that begins at position `at`. The position is advanced to the next line.
@@ -29,8 +29,8 @@ std::string next_line(const std::string& text, std::size_t& at) {
   return text.substr(begin, end - begin);
 }
 
-/// Ends all ranks if this host has a study or mechanism file whose contents differ from those that rank 0 has read: the
-/// user then probably assumes that this rank uses its own file.
+/// Ends all MPI ranks if this host has a study or mechanism file whose contents differ from those that rank 0 has read:
+/// the user then probably assumes that this rank uses its own file.
 void expect_same_files(const StudyContents& contents) {
   const auto compare = [](const std::string& file, const std::string& recorded, TextKind kind) {
     const std::string text = upgraded(recorded, kind).text;
@@ -48,7 +48,7 @@ void expect_same_files(const StudyContents& contents) {
   if (contents.description) compare(contents.description->file_name, contents.description->text, TextKind::mechanism);
 }
 
-/// Executes the run that a message of rank 0 describes.
+/// Executes the run that a message of MPI rank 0 describes.
 void join_run(const std::string& message, const Catalogues& catalogues, const ProgramVersion& program) {
   std::size_t at = 1;
   RunOptions options;

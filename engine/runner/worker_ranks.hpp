@@ -11,7 +11,8 @@
 
 namespace pkm {
 
-/// Main loop of a worker rank: participates in the runs that rank 0 starts, without printing or writing anything.
+/// Main loop of a worker rank (an MPI rank other than 0): participates in the runs that rank 0 starts, without printing
+/// or writing anything.
 /// @return the exit code received from rank 0 at the end of the program
 int run_worker_rank(const Catalogues& catalogues, const ProgramVersion& program);
 
@@ -19,7 +20,7 @@ int run_worker_rank(const Catalogues& catalogues, const ProgramVersion& program)
 /// options and study file. "" if there are no worker ranks.
 std::string run_message(const StudyContents& contents, const RunOptions& options);
 
-/// Ends the worker ranks. Rank 0 calls it at the end of the program.
+/// Ends the worker ranks (all MPI ranks other than 0). Rank 0 calls it at the end of the program.
 void stop_worker_ranks(int exit_code);
 
 }  // namespace pkm

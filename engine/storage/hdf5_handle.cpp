@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
 
-// Size in bytes by which the memory grows; small, because HDF5 zeroes each increment.
+// Size in bytes by which the memory of a file image grows; small, because HDF5 zeroes each increment.
 constexpr std::size_t kMemoryIncrement = std::size_t{1} << 16;
 
 /// Callback of H5Ewalk2: copies the description of the first error that it is called with and ends the walk.

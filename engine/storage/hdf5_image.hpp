@@ -83,6 +83,7 @@ class ImageReader {
   int schema() const { return schema_; }
   template <class T>
   void attribute(const std::string& group, const std::string& name, T& value) const;
+  /// Reads a dataset into `values`. Throws ImageError if it does not have the expected extent.
   /// @param extent  extent that the dataset must have; a first size of kAnyRows accepts any number of rows
   template <class T>
   void array(const Leaf& leaf, std::vector<T>& values, const Extent& extent) const;

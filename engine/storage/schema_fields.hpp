@@ -125,7 +125,8 @@ void visit_matrix(Archive& archive, const std::string& path, const char* descrip
   archive.array(leaf, values, extent);
 }
 
-/// Writes or reads an array of three values, as in VoxelMap; the archives handle vectors only.
+/// Writes or reads an array of three values, such as the numbers of cells of a voxel map; the archives handle vectors
+/// only.
 template <class Archive, class Array>
 void visit_array_of_three(Archive& archive, const Leaf& leaf, Array& values) {
   std::vector copy(std::begin(values), std::end(values));

@@ -56,7 +56,7 @@ struct ProblemRecord {
 /// A function of another program that the study calls. Its code is not stored.
 struct FunctionRecord {
   std::string call;  ///< name of the function in the study, for example "cost.py:price"
-  std::string hash;  ///< hash of the file that defines it, at the start of the study; "": unknown
+  std::string hash;  ///< hash of the file that defines the function, at the start of the study; "": unknown
 };
 
 /// A stage limit that `pkmopt resume` has raised. It is stored separately because the TOML text is never changed, and a
@@ -69,24 +69,25 @@ struct Extension {
 
 /// Records of the complete generations of a stage. Each array has one element per generation, except `population`.
 struct GenerationRecords {
-  std::vector<std::int64_t> first_row;  ///< first row of the generation in the stage's table
+  std::vector<std::int64_t> first_row;  ///< first row of the generation in the evaluation table
   std::vector<std::int64_t> best_row;   ///< row of the best evaluation up to this generation; -1: none
   std::vector<double> feasible_share;   ///< feasible share of the population, in [0, 1]
-  std::vector<double> diversity;        ///< diversity of the population, defined at record_generation()
-  std::vector<double> seconds;          ///< wall time of the study at the end of the generation
+  /// Diversity of the population: mean over the variables of the standard deviation relative to the variable's range.
+  std::vector<double> diversity;
+  std::vector<double> seconds;  ///< wall time of the study at the end of the generation
   /// Index in `population` of the first member of the generation's population.
   std::vector<std::int64_t> population_first;
-  /// Rows of the members of all populations in the stage's table, one generation after the other.
+  /// Rows of the members of all populations in the evaluation table of the stage, one generation after the other.
   std::vector<std::int64_t> population;
 
   std::size_t size() const { return first_row.size(); }
-  /// Rows, in the stage's table, of the members of generation g's population.
+  /// Rows, in the evaluation table of the stage, of the members of generation g's population.
   std::span<const std::int64_t> population_of(std::size_t g) const;
-  /// End of the range of rows that generation g has evaluated, in a table of `rows` rows.
+  /// End of the range of rows that generation g has evaluated, in an evaluation table of `rows` rows.
   std::size_t end_of(std::size_t g, std::size_t rows) const {
     return g + 1 < size() ? static_cast<std::size_t>(first_row[g + 1]) : rows;
   }
-  /// @return for each row of a table of `rows` rows, the generation that evaluated it
+  /// @return for each row of an evaluation table of `rows` rows, the generation that evaluated it
   std::vector<std::int64_t> generation_of_rows(std::size_t rows) const;
 };
 
@@ -117,9 +118,10 @@ struct OptimalityRecord {
   std::vector<SensitivityRecord> sensitivities;  ///< one element per parameter, in the order of the mechanism
 };
 
-/// The Pareto front of a stage (see Front) and its quality indicators after each generation.
+/// The Pareto front of a stage, i.e. its feasible non-dominated designs, and its quality indicators after each
+/// generation.
 struct FrontRecord {
-  /// Rows in the stage's table, from the best to the worst value of the first objective.
+  /// Rows in the evaluation table of the stage, from the best to the worst value of the first objective.
   std::vector<std::int64_t> rows;
   std::vector<double> reference;                      ///< reference point of the hypervolume; empty: none
   std::vector<double> hypervolume, spread, igd_plus;  ///< one value per generation; empty for solver stages
@@ -141,7 +143,7 @@ struct StageRecord {
   std::vector<StartOutcome> starts;
   std::vector<UnmergedRun> ahead;  ///< interrupted solver stages: runs whose evaluations are not yet in `table`
   std::optional<OptimalityRecord> optimality;  ///< set for finished stages with derivatives and a single objective
-  std::optional<FrontRecord> front;            ///< set for several objectives only
+  std::optional<FrontRecord> front;            ///< Pareto front; set for several objectives only
 
   bool has_front() const { return front && !front->rows.empty(); }
 };
@@ -201,13 +203,16 @@ struct StudyContents {
   std::string toml_file;  ///< name of the file from which the text was read
   /// Text of the mechanism file, if the study names one; otherwise std::nullopt.
   std::optional<SourceText> description;
-  std::string text_digest;  ///< hash of both texts at the start of the study; "" in files of schemas before 5
+  /// Hash of the texts of study and mechanism file at the start of the study; "" in files with a schema version below
+  /// 5.
+  std::string text_digest;
   /// The Python functions that the study calls; std::nullopt: none.
   std::optional<std::vector<FunctionRecord>> functions;
   std::uint64_t seed = 1;
   std::string program_version;
   std::string program_revision;
-  /// Algorithm version, see kAlgorithms; a study can be resumed only by a program of the same version.
+  /// Version of the numerical behaviour of optimisers and workspace analyses (kAlgorithms); only a program of the same
+  /// version can resume the study.
   std::int64_t algorithms = 1;
   std::string machine;  ///< processor, number of cores, instruction set, operating system
   std::string created;  ///< time at which the study was started, ISO 8601 in UTC

@@ -43,7 +43,7 @@ bool is_lock_file(int fd) {
   return text.starts_with(kLockSignature) || kLockSignature.starts_with(text);
 }
 
-/// The process whose name the lock file contains.
+/// Name of the process that holds the lock, as written in the lock file.
 std::string holder_of(int fd) {
   const std::string text = read_text(fd);
   return text.starts_with(kLockSignature) ? "process " + text.substr(kLockSignature.size()) : "another process";

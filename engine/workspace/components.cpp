@@ -18,7 +18,8 @@
 namespace pkm {
 namespace {
 
-/// Sides of poses from Mechanism::inspect(), for mechanisms without a faster test.
+/// Finds the side of the singularities on which a pose lies by Mechanism::inspect(), for mechanisms without a faster
+/// test.
 class InspectedSides final : public PoseSides {
  public:
   InspectedSides(const Mechanism& mechanism, const LimitSpec& limits, const std::string& mode)
@@ -192,7 +193,8 @@ class ComponentFinder::Search {
       if (!visit(candidate)) return;
   }
 
-  /// The nearest cell of a component that a straight line connects with a pose. Throws DesignError.
+  /// The nearest cell of a component that a feasible straight line connects with a pose. Throws DesignError if there is
+  /// none, or if the pose is infeasible, singular or outside of the grid.
   std::size_t cell_near(const ConnectedComponents& components, const std::array<double, 3>& at,
                         const std::string& what) {
     const MechanismInfo& info = finder_.mechanism_.info();
@@ -272,7 +274,8 @@ ConnectedComponents ComponentFinder::find(std::span<const double> parameters, co
 
   DisjointSets sets(search.count());
   const auto is_joined = [&](std::size_t cell, std::size_t next) { return sets.root(cell) == sets.root(next); };
-  // Faces between two cells; a face is represented by the cell in front of it along the axis.
+  // Faces between a cell and the next one along the axis, each represented by the first of the two cells: `faces`
+  // contains those that are tested first, `rest` the others.
   std::vector<std::size_t> faces, rest;
   for (std::size_t axis = search.axes(); axis-- > 0;) {
     const auto next_of = [&](std::size_t cell) { return *search.next(cell, axis); };

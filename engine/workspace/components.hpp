@@ -33,7 +33,7 @@ struct ConnectedComponents {
   std::vector<WorkspaceComponent> all;  ///< component k has the number k + 1; the largest one comes first
 };
 
-/// Whether components end at singularities.
+/// Whether paths within a component may cross singularities; if not, components end there.
 enum class Crossing { forbidden, allowed };
 
 /// Finds the connected components of voxel workspaces. Immutable and thread-safe.

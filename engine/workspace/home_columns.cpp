@@ -35,15 +35,15 @@ class HomeColumns final : public WithGradients<HomeColumns> {
 
   /// The component of the workspace of one design that contains the home pose.
   struct Home {
-    std::shared_ptr<const bool> of;  ///< HomeColumns::identity_ of the evaluator that computed the members; null: no
-                                     ///< evaluator
+    std::shared_ptr<const bool> of;  ///< identity_ of the HomeColumns that computed the other members; null: not
+                                     ///< computed
     std::vector<double> parameters;
     VoxelMap map;
     ConnectedComponents components;
     std::uint32_t label = 0;
     std::int8_t side = 0;    ///< side of the singularities to which the columns are restricted; 0: the columns are not
                              ///< restricted
-    bool is_single = false;  ///< true: the component is the only one on this side
+    bool is_single = false;  ///< true: no other component is on this side of the singularities
   };
   template <class S>
   struct Nodes {

@@ -34,7 +34,8 @@ struct LargestSolid {
   /// Norm of the last step plus the largest violation of a constraint, relative to the size of the solid: accuracy of
   /// the dimensions.
   double residual = 0;
-  /// If det(G) = 0 is a constraint: factor by which det(G) is multiplied to obtain its margin; otherwise 0.
+  /// If the solid must not contain singularities det(G) = 0: the factor by which det(G) is multiplied to obtain a
+  /// margin; otherwise 0.
   double determinant = 0;
   std::size_t samples = 0;  ///< number of poses at which the constraints were tested in the final test
   bool is_regular = true;   ///< true: det(G) does not change its sign in the solid, as far as sampled, or is undefined
@@ -52,7 +53,7 @@ class LargestSolidFinder {
 
   /// Finds the largest solid of a design. The results of the last few designs are cached.
   LargestSolid find(std::span<const double> parameters) const;
-  /// The volume with derivatives by the envelope theorem, if one constraint decides each size: constraints that are
+  /// The volume with derivatives by the envelope theorem, which requires unique multipliers. Constraints that are
   /// limits of quantities without a formula, det(G) and faces of a search box that depends on the design are
   /// differentiated by central differences.
   /// @param found  find() of the same parameters
@@ -91,7 +92,7 @@ class LargestSolidFinder {
   std::vector<ReportMargin> reported_;
   const Sweep& sweep_;
   std::unique_ptr<const VoxelEvaluator> voxels_;
-  std::unique_ptr<const PoseSides> sides_;  ///< null: det G is computed at each pose
+  std::unique_ptr<const PoseSides> sides_;  ///< finds signs of det J; null: det G is computed
   SolidSamples coarse_samples_, samples_, dense_samples_;
   std::shared_ptr<Memory> memory_ = std::make_shared<Memory>();
 };

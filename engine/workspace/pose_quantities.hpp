@@ -14,12 +14,13 @@ namespace pkm {
 
 extern const PoseQuantity kConditioning, kCouplingIndex, kInertiaCondition;
 
-/// The built-in quantities in the order of tables: those of pose reports before those of inertia.
+/// The built-in quantities in the order of tables: first those computed from a PoseReport, then those of the
+/// joint-space inertia.
 const std::vector<const PoseQuantity*>& pose_quantities();
 /// The quantities of a mechanism: the built-in ones, then its formulas.
 std::vector<const PoseQuantity*> pose_quantities(const MechanismInfo& info);
-/// The quantity of this name. Throws std::invalid_argument if there is none, or if it is a formula of the design alone
-/// or of time derivatives.
+/// The pose quantity of this name. Throws std::invalid_argument if there is none, for example if the name is that of a
+/// formula of the design alone, of time derivatives or of a single limb.
 const PoseQuantity& pose_quantity_called(const MechanismInfo& info, const std::string& name);
 
 /// Appends the values of all requested quantities that are computed from a PoseReport.

@@ -41,7 +41,8 @@ class SolidMargins {
   std::vector<std::string> names() const;
   const std::vector<Pose<double>>& orientations() const { return orientations_; }
   Pose<double> pose(const std::array<double, 3>& point, std::size_t orientation) const;
-  /// All critical points with a distance below `range`, found from samples of the solid.
+  /// All local minima of margins over the solid whose CriticalPoint::distance is below `range`, found from samples of
+  /// the solid.
   std::vector<CriticalPoint> critical_points(const Solid& solid, double range, const SolidSamples& samples);
   /// The local minimum of a margin over the solid that Newton's method finds from a starting point.
   CriticalPoint minimise(const Solid& solid, std::size_t margin, std::size_t orientation, const UnitPoint& start);

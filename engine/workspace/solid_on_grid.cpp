@@ -73,7 +73,8 @@ class GridSearch {
   }
 
  private:
-  /// Calls visit(cell) for each good cell for which the current solid, centred at it, does not extend beyond the grid.
+  /// Calls visit(cell) for each good cell (a cell that may be in the solid) for which the current solid, centred at it,
+  /// does not extend beyond the grid.
   template <class Visit>
   void for_each_centre(const Visit& visit) const {
     std::array<std::int64_t, 3> first{}, end{};
@@ -89,7 +90,7 @@ class GridSearch {
   }
 
   /// Computes the rows of cells that a solid with these dimensions covers. The outermost rows come first, because their
-  /// cells are most likely to be bad.
+  /// cells are most likely to be bad, i.e. not allowed in the solid.
   void set_rows(const std::vector<double>& dimensions) {
     rows_.clear();
     const std::size_t axes = spec_.shape.axes();
@@ -151,7 +152,7 @@ class GridSearch {
   const VoxelGrid& grid_;
   const std::vector<std::uint8_t>& good_;
   const SolidSpec& spec_;
-  std::vector<std::uint32_t> bad_before_;  ///< bad_before_[k]: number of bad cells with an index less than k
+  std::vector<std::uint32_t> bad_before_;  ///< bad_before_[k]: number of bad cells (not good) with an index < k
   /// For each axis, the range of indices that the central cell can have: first, end (excluded).
   std::array<std::array<std::int64_t, 2>, 3> range_{};
   std::vector<RowOfCells> rows_;

@@ -120,6 +120,7 @@ class SolidRefinement {
   /// Adds the points of the solid nearest to the faces of the search box.
   void add_faces(const Solid& solid, std::vector<CriticalPoint>& points) const;
 
+  /// Evaluates the solid with the variables `x`: its volume, its critical points and the violation of the constraints.
   /// @param before  the iterate from which `x` was reached; null: none
   /// @param length  length of the step from `before` to `x`; after small steps only the critical points of `before` are
   ///   followed

@@ -145,7 +145,8 @@ class Evaluator {
   }
 
   /// Adjusts the sign of a margin to the field `feasible`: > 0 if feasible, otherwise < 0. Rounding errors can give the
-  /// opposite sign, some poses have no margin, and feasible poses of components that do not count have to be negative.
+  /// opposite sign, some poses have no margin, and poses of components that do not count as workspace need a negative
+  /// one.
   static double with_sign(double margin, bool feasible) {
     constexpr double kMinMagnitude = 1e-12;
     if (!std::isfinite(margin)) return feasible ? 1 : -1;

@@ -1,9 +1,9 @@
 // Evaluates quantities of poses on a voxel grid over the workspace of a design, for plots and exports.
 //
-// The cells are those of voxel_map(), with one value of each fixed coordinate. A field has one value per cell. Fields
-// that describe the mechanism at a pose are evaluated at the centres of feasible cells and are NaN elsewhere. The order
-// of the fields is: feasible, margin, quantities of poses (engine/workspace/pose_quantities.hpp) without inertia, joint
-// positions, quantities of inertia.
+// The cells are those of the voxel analysis, with one value of each fixed coordinate. A field has one value per cell.
+// Fields that describe the mechanism at a pose are evaluated at the centres of feasible cells and are NaN elsewhere.
+// The order of the fields is: feasible, margin, quantities of poses (engine/workspace/pose_quantities.hpp) without
+// inertia, joint positions, quantities of inertia.
 //
 //   feasible           1 or 0, as counted by voxel workspace analysis
 //   margin             minimum margin of the pose: > 0 in feasible cells, < 0 in the others; 0 on the boundary surface.

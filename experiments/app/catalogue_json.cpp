@@ -66,7 +66,7 @@ Json limits_json(const MechanismInfo& info, const std::string& group) {
   return list;
 }
 
-/// The names that expressions may use, with the units of a workspace analysis over the first sweep's coordinates.
+/// The names that expressions may use, with their units if the workspace is analysed over the default sweep.
 Json expression_names_json(const Mechanism& mechanism) {
   using Origin = ExpressionName::Origin;
   return list_json(expression_names(mechanism, {}), [](const ExpressionName& known) -> Json {

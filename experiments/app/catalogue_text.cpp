@@ -10,7 +10,8 @@
 namespace pkm {
 namespace {
 
-// Maximum number of further sweeps in a table; if there are more, a summary is printed instead.
+// Maximum number of sweeps (sets of swept coordinates) beside the default one that are listed in a table; if a
+// mechanism has more, a summary is printed instead.
 constexpr std::size_t kMaxListedSweeps = 8;
 
 /// A table of a list of objects: one row per object, one column per key; empty columns are omitted.

@@ -137,7 +137,8 @@ std::string report_claim(const MechanismInfo& info, const PosesClaim& claim, con
   }
 }
 
-/// Adds the results on feasibility and on singularities to the output. @return see report_claim()
+/// Adds the results on feasibility and on singularities to the output. @return the error message on the first property
+/// that is not proven; "" if both are proven
 std::string report_poses(const MechanismInfo& info, const PoseCertificate& found, const std::string& region,
                          Printout& out) {
   const std::string in = (region == "motion" ? "along the " : "in the ") + region;

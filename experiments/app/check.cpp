@@ -146,7 +146,8 @@ Json probe_json(const Probe& probe) {
       {"designs", probe.table.size()}, {"feasible", probe.feasible()}, {"diagnosis", diagnosis_json(probe.diagnosis)}};
 }
 
-/// Text of a probe without the contradictions between requirements, which have been printed before.
+/// Text of the results of the sample designs, without the contradictions between requirements, which were printed
+/// before.
 std::string probe_text(const Probe& probe) {
   std::string text = "\nprobe: " + describe_probe(probe) + '\n';
   if (!probe.diagnosis) return text;

@@ -25,9 +25,9 @@ namespace pkm {
 inline constexpr int kDone = 0;
 inline constexpr int kFailure = 1;
 inline constexpr int kBadInput = 2;
-/// The study was stopped after writing a checkpoint, and 'pkmopt resume' can continue it.
+/// Exit code: the study was stopped after writing a checkpoint, and 'pkmopt resume' can continue it.
 inline constexpr int kStoppedEarly = 3;
-/// The study is complete without a feasible design, or it provably has none.
+/// Exit code: the study is complete without a feasible design, or it provably has none.
 inline constexpr int kNothingFeasible = 4;
 
 /// Data that every command receives; a command also sets its exit code here.
@@ -97,7 +97,7 @@ AddCommand add_run, add_resume, add_check, add_evaluate, add_sensitivity, add_po
     add_manual;
 void add_all_commands(CLI::App& app, Session& session);
 
-/// What stopped a command, with the exit code that says so: "SIGINT (Ctrl-C), exit code 3".
+/// Text that states what stopped a command, and the exit code: "SIGINT (Ctrl-C), exit code 3".
 std::string stop_words(const std::string& cause);
 
 inline constexpr const char* kProgramMeaning = "Design-space optimisation of parallel kinematic machines.";

@@ -25,7 +25,7 @@ struct CompareArguments {
 
 using Robots = std::vector<ComparedRobot>;
 
-/// The unit of a line in which the table shows it, if it is the same for all robots; otherwise "-".
+/// The unit in which the table shows line k of the comparison, if it is the same for all robots; otherwise "-".
 std::string unit_of_line(const Robots& robots, std::size_t k) {
   std::string unit;
   for (const ComparedRobot& robot : robots) {
@@ -38,7 +38,7 @@ std::string unit_of_line(const Robots& robots, std::size_t k) {
   return unit;
 }
 
-/// A row of the table; empty if no robot has the value.
+/// The table row of line k of the comparison, with the values of all robots; empty if no robot has the value.
 Row row_of_line(const Robots& robots, std::size_t k) {
   const std::string unit = unit_of_line(robots, k);
   Row row = {robots.front().values[k].name, unit};

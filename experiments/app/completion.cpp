@@ -11,7 +11,8 @@
 namespace pkm {
 namespace {
 
-/// What an option or an argument accepts: words, files, or both, or names of the robot on the command line.
+/// Values that an option or an argument accepts: words, files, or both, or names that belong to the robot on the
+/// command line (parameters, limits).
 struct PossibleValues {
   std::vector<std::string> words;
   std::string extension;   ///< extension of the files, for example "h5"; "*": files with any name; "": no files
@@ -204,7 +205,7 @@ end
   }
 }
 
-/// Prints the names that --set or --limit accept for a robot, one per line, each with the sign that follows it.
+/// Prints the names that --set or --limit accept for a robot, one per line, each followed by "=".
 void print_names(const Session& session, const std::string& robot, bool limits) {
   DesignArguments arguments;
   (robot.ends_with(".h5") ? arguments.from : arguments.target) = robot;

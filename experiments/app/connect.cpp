@@ -75,7 +75,7 @@ PathTask read_task(const Target& target, const ConnectArguments& arguments) {
   return task;
 }
 
-/// A motion file with stops at the points of a path.
+/// Text of a motion file: a motion through the points of a path, with a stop at each.
 std::string motion_text(const MechanismInfo& info, const std::vector<Pose<double>>& points) {
   const auto value = [](double x) {
     const std::string digits = formatted("%.17g", x);

@@ -10,7 +10,7 @@ namespace pkm {
 
 /// An option, or a positional argument, of a command.
 struct DeclaredOption {
-  std::string name;        ///< name of the option, for example "--output"; for an argument, its type
+  std::string name;        ///< name of the option, for example "--output"; for an argument, its placeholder
   std::string short_name;  ///< one-letter form of the option, for example "-o"; "": none
   std::string type;        ///< placeholder of the value, for example "F.h5"; "": the option has no value
   std::string meaning;

@@ -320,7 +320,7 @@ std::string evaluate(const Session& session, const Target& target, const Evaluat
   });
   const bool failed = report.status == Status::failed, surveyed = !failed || bounds;
 
-  /// Adds named values with their units, a remark on each, and their meanings.
+  /// Adds named values to the output, each with its unit, a remark and its meaning.
   const auto report_values = [&](const std::string& key, const std::string& title, const auto& named,
                                  const std::vector<double>& values, const auto& remark, const auto& text_of) {
     std::vector<Row> rows;

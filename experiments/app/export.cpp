@@ -39,7 +39,7 @@ Pose<double> reference_pose(const Target& target, const std::string& mode, const
                     "the reference pose of the model");
 }
 
-/// Path of the file of a table within the folder.
+/// Path of the file to which a table is written in a folder.
 std::string path_of(const std::string& folder, const NamedTable& table) {
   return (std::filesystem::path(folder) / table.file_name).string();
 }

@@ -30,11 +30,12 @@ MotionLimits parse_limits(const Mechanism& mechanism, const FastestArguments& ar
 std::shared_ptr<const Mechanism> with_motor(const std::shared_ptr<const Mechanism>& mechanism,
                                             const FastestArguments& arguments, const MotionLimits& limits);
 
-/// Throws ConfigError if the motion has no fastest motion.
+/// Finds the shortest time of a motion within the limits, for the time law of --law. Throws ConfigError if there is
+/// none.
 FastestMotion fastest_motion(const DesignWithLimits& design, const std::shared_ptr<const Motion>& motion,
                              const FastestArguments& arguments, std::size_t samples);
 
-/// Adds the law and the limits that are active to the output.
+/// Adds the time law, and the limits that bound the motion in each period, to the output.
 void report_fastest(const MechanismInfo& info, const FastestMotion& found, const FastestArguments& arguments,
                     Printout& out);
 

@@ -71,7 +71,7 @@ std::array<bool, 3> set_grid(WorkspacePlan& plan, const Target& target, const Gr
       given[i] = given[i] || ranges[i];
     }
   }
-  std::vector<std::size_t> axes;  // those that have more than one cell
+  std::vector<std::size_t> axes;  // indices of the axes that are not sliced
   std::vector<std::string> names;
   for (std::size_t i = 0; i < swept.size(); ++i) {
     voxels.cells[i] = sliced.contains(sweep.swept[i]) ? 1 : voxels.cells[i];

@@ -27,7 +27,7 @@ std::vector<Assignable> assignable_coordinates(const MechanismInfo& info, const 
 /// Parses --home: values of all swept coordinates, in the order of Sweep::swept. Throws ConfigError.
 std::array<double, 3> parse_home(const std::vector<std::string>& lists, const MechanismInfo& info, const Sweep& sweep);
 
-/// Parses a --box of poses. Throws ConfigError if the range of a swept coordinate is missing.
+/// Parses the option --box as a box of poses. Throws ConfigError if the range of a swept coordinate is missing.
 /// @return the range of each coordinate; coordinates that are not swept have their fixed value
 std::vector<std::array<double, 2>> parse_pose_box(const Target& target, const WorkspacePlan& plan,
                                                   const std::vector<std::string>& box);

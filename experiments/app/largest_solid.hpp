@@ -21,12 +21,13 @@ struct SolidArguments {
 /// Declares --largest-box, --largest-cylinder, --largest-sphere and their further options.
 void add_solid_options(CLI::App& command, SolidArguments& arguments);
 
-/// A solid that is requested.
+/// A solid that the options request.
 struct RequestedSolid {
   std::string name;  ///< word for the solid in messages, such as "box"
   std::unique_ptr<const LargestSolidFinder> finder;
 };
-/// The requested solids, ready to be found under a plan with voxels. Throws ConfigError if the options do not fit it.
+/// The requested solids, ready to be found under a plan with voxels. Throws ConfigError if the options do
+/// not fit the plan.
 /// @param slices  coordinates that the plan sweeps and that are fixed for the solids
 std::vector<RequestedSolid> requested_solids(const SolidArguments& arguments, const Target& target, WorkspacePlan plan,
                                              const Slices& slices);

@@ -20,7 +20,7 @@ namespace {
 constexpr double kMinInterval = 2;       // time between two writes [s]
 constexpr double kLiveShare = 0.005;     // share of the run time spent on the page
 constexpr int kReloadSeconds = 5;        // time after which the browser reloads the page
-constexpr std::size_t kMaxPoints = 400;  // points of a curve
+constexpr std::size_t kMaxPoints = 400;  // maximum number of points of a curve
 
 constexpr const char* kLiveStyle = R"(
 :root { color-scheme: light dark; --ground: #f6f7f8; --box: #fff; --ink: #1b2530; --muted: #5a6675; --line: #dde2e8;
@@ -55,7 +55,7 @@ a { color: var(--accent); }
 std::string shown_number(double value, const std::string& unit) {
   return std::isnan(value) ? "–" : formatted("%.4g", unit == "m" ? 1e3 * value : value);
 }
-/// The unit of shown_number(); "" for numbers without a unit.
+/// The unit in which shown_number() shows values with this SI unit; "" for numbers without a unit.
 std::string shown_unit(const std::string& unit) {
   if (unit == "m") return "mm";
   std::string text;
@@ -77,7 +77,7 @@ std::string row(const std::string& name, const std::string& value) {
 /// A curve over the generations of all stages.
 struct Curve {
   std::string title, unit;
-  std::string note;                         ///< continuation of the title
+  std::string note;                         ///< text that is shown after the title
   std::vector<std::vector<double>> stages;  ///< one value per generation of each stage; NaN: none
 };
 
@@ -203,7 +203,7 @@ std::string best_section(const StudyContents& contents) {
   const std::span<const double> design = contents.best_design();
   for (std::size_t i = 0; i < problem.variables.size(); ++i) {
     std::string value = shown_value(design[i], problem.variables[i].unit);
-    std::size_t number = 0;  // of the value among those of its catalogue, from 1
+    std::size_t number = 0;  // number of the catalogue row, from 1
     if (problem.choices)
       for (const ChoiceName& choice : *problem.choices)
         if (choice.variable == static_cast<std::int64_t>(i) &&

@@ -10,12 +10,12 @@
 
 namespace pkm {
 
-/// The text of the page.
+/// Data from which the text of the page is generated.
 struct LivePageState {
   std::string study_file;  ///< name of the study file
   std::string updated;     ///< time of this state, ISO 8601 in UTC
   ProgressReport progress;
-  /// StudyState::running: the page reloads itself. Otherwise it has its final state.
+  /// StudyState::running: the page reloads itself; otherwise it does not change any more.
   StudyState state = StudyState::running;
   std::string stopped;  ///< reason why the run was interrupted, such as "SIGINT"; "" otherwise
   std::string report;   ///< name of the report's file, to which a finished page links; "": there is none
@@ -32,7 +32,7 @@ class LivePage {
   /// @param now       clock [s]; default: steady_seconds()
   LivePage(std::string path, const std::string& study_file, const StudyContents& contents,
            std::function<double()> now = {});
-  /// Writes the page if it is time to.
+  /// Writes the page if enough time has passed since it was last written.
   void update(const StudyContents& contents, const ProgressReport& progress);
   /// Writes the final state. @param report  path of the report in the folder of the page; "": none
   void finish(const StudyContents& contents, const std::string& stopped, const std::string& report);
@@ -43,7 +43,7 @@ class LivePage {
   std::string path_;
   std::function<double()> now_;
   LivePageState state_;
-  double next_ = 0;  ///< time of the next write
+  double next_ = 0;  ///< earliest time of the next write [s]
 };
 
 /// Path of the page of a study: study.live.html for study.h5.

@@ -17,7 +17,7 @@ struct ModelFiles {
 };
 /// Declares --urdf, --sdf and --mjcf.
 void add_model_options(CLI::App& command, ModelFiles& files);
-/// Extensions of these files, with the variables that hold their names, for the option -o.
+/// File extensions of the three formats, with the variables that hold the file names, for the option -o.
 std::vector<std::pair<std::string, std::string*>> extensions_of(ModelFiles& files);
 
 /// Names and contents of the requested files, and of the YAML file that accompanies a URDF file. Throws ConfigError if
@@ -26,7 +26,7 @@ std::vector<std::pair<std::string, std::string*>> extensions_of(ModelFiles& file
 std::vector<std::pair<std::string, std::string>> model_texts(const ModelFiles& files, const Target& target,
                                                              const std::string& mode, const Pose<double>& pose,
                                                              const std::string& title);
-/// Names of the files that model_texts() returns.
+/// Names of the model files that are requested, and of the YAML file that accompanies a URDF file.
 std::vector<std::string> model_file_names(const ModelFiles& files);
 
 }  // namespace pkm

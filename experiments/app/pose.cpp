@@ -55,7 +55,7 @@ void report_joints(const Target& target, const std::string& mode, const MotionSa
 
 const std::vector<std::string> kTwistComponents = {"vx", "vy", "vz", "wx", "wy", "wz"};
 
-/// Adds the matrices to the JSON output, with the names of their rows and columns.
+/// Adds the Jacobian matrices to the JSON output, with the names of their rows and columns.
 void add_jacobians(const MechanismInfo& info, const PoseReport& report,
                    const std::optional<AxisMatrix<double>>& J_twist, Json& json) {
   json.update({{"J", matrix_json(report.J)},
@@ -88,7 +88,7 @@ bool is_twist_of_rates(const AxisMatrix<double>& T) {
   return true;
 }
 
-/// Prints those matrices that are defined for the mechanism.
+/// Prints those Jacobian matrices that are defined for the mechanism.
 void print_jacobians(const PoseReport& report, const std::optional<AxisMatrix<double>>& J_twist, Printout& out) {
   const auto print = [&out](const std::string& title, const std::optional<AxisMatrix<double>>& matrix) {
     out.text += matrix ? matrix_text(title, *matrix) : '\n' + title + ": undefined at this pose\n";
@@ -229,7 +229,7 @@ std::string pose(const Target& target, const PoseArguments& arguments, const std
   json["angles"] = values_by_name(report.angles);
   std::vector<Row> angles;
   for (const auto& [name, value] : report.angles) {
-    // Those that are not quantities of the mechanism are the clearance and the angles of the passive joints.
+    // A value whose name is not that of a quantity of the mechanism is the clearance or the angle of a passive joint.
     const QuantityInfo* const quantity = find_named(info.quantities, name);
     angles.push_back({name, number(value, quantity ? quantity->unit : name == "clearance" ? "m" : "rad")});
   }

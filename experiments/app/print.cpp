@@ -53,7 +53,8 @@ std::string directed_digits(double value, int count, int direction) {
   const auto text_of = [&](double multiple) { return format_digits(multiple * digit, count); };
   const double multiple = direction < 0 ? std::floor(value / digit) : std::ceil(value / digit);
   const std::string text = text_of(multiple);
-  // The quotient is rounded, so that it may be an integer where it should lie beside one.
+  // Rounding of the quotient value / digit can give the wrong integer, so that the text lies on the wrong side of the
+  // value.
   return (std::stod(text) - value) * direction >= 0 ? text : text_of(multiple + direction);
 }
 

@@ -34,15 +34,15 @@ void use_digits(int count);
 /// @param known  digits of the value that are known; more are printed only on request (--digits)
 int significant_digits(int known = kFullDigits);
 
-/// As display_unit(), for objectives, outputs and constraints of a study, whose rad is not converted, because it is
-/// seldom an angle: a workspace ratio over x, z and theta, for example, has this unit.
+/// The unit in which people read an objective, output or constraint of a study; rad is not converted to degrees,
+/// because it is seldom an angle: a workspace ratio over x, z and theta, for example, has this unit.
 DisplayUnit result_unit(std::string_view si_unit, double magnitude);
 
 /// Text of a number without a unit. A number below 1e7 has at least the digits before its decimal point: "12412".
 /// "-" for NaN.
 /// @param least  minimum number of significant digits
 std::string digits(double value, int least = 1);
-/// As digits(), with the sign of positive numbers: "+0.25".
+/// Text of a number without a unit, with the sign of positive numbers: "+0.25".
 std::string signed_digits(double value);
 /// Text of a number with the unit that suits it: "302.1 mm", "0.3021"; "not computed" for NaN.
 /// @param known  digits of the value that are known

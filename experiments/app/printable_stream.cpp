@@ -33,7 +33,7 @@ bool PrintableStream::escape_received(std::size_t size) {
   return true;
 }
 
-/// Writes the first `size` bytes of escaped_, after applying the style.
+/// Writes the first `size` bytes of escaped_, after style_ has added colours and line breaks.
 bool PrintableStream::write_escaped(std::size_t size) {
   if (size == 0) return true;
   const std::string shown = style_(std::string_view(escaped_).substr(0, size));

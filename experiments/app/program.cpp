@@ -42,7 +42,7 @@ constexpr std::size_t kMaxProgramName = 40;  // maximum number of bytes of the p
 struct Command {
   std::string_view name;
   AddCommand* add;
-  bool prints_results = false;  ///< true if it prints computed values
+  bool prints_results = false;  ///< true if the command prints computed values
   bool evaluates = false;  ///< true if the command evaluates many designs, so that the instruction set influences its
                            ///< run time
 };

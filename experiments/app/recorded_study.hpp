@@ -17,7 +17,7 @@ namespace pkm {
 Study recorded_study(const StudyContents& contents, const std::string& file, const Session& session,
                      const StudyChanges& changes = {});
 
-/// As recorded_study(), but without throwing.
+/// Rebuilds the study from `contents`, the contents of `file`; does not throw.
 /// @param why  receives the reason if there is no study
 /// @return std::nullopt if recorded_study() would throw
 std::optional<Study> find_recorded_study(const StudyContents& contents, const std::string& file, const Session& session,

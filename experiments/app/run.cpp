@@ -130,7 +130,8 @@ RunOutcome run_one(const Study& study, const std::string& output, const RunArgum
     return run_with_live_page(contents, output, arguments.common, options, session, execute);
   };
   if (!arguments.resume || !exists(output)) {
-    if (!arguments.force && exists(output)) return run_study(study, output, false, options, progress);  // throws
+    // If the file exists, run_study() throws StorageError.
+    if (!arguments.force && exists(output)) return run_study(study, output, false, options, progress);
     StudyContents nothing;
     nothing.name = study.name;
     return with_page(nothing, [&](const RunOptions& observed) {

@@ -157,7 +157,8 @@ void print_run_end(const RunEnd& end, const Study& study, const std::string& fil
   } else if (!arguments.quiet) {
     const std::string exchange =
         ranks::size() > 1 ? formatted("messages between ranks %.1f %% and ", 100 * outcome.exchange_share) : "";
-    // The shares of shorter runs [s] say little. With several ranks, the line also confirms that they worked together.
+    // Time [s] of a run below which its shares are not representative and are not printed. With several MPI ranks, the
+    // line also confirms that all of them took part.
     constexpr double kShort = 1;
     if (outcome.evaluations == 0)
       std::cout << "the study was already finished: no new evaluations\n";

@@ -47,7 +47,7 @@ class SeedProgress final : public Progress {
 /// Results of all seeds: one table row for each, and the values from which the spread is computed.
 struct SeedTable {
   bool pareto;       ///< true: there are several objectives, and the seeds are compared by their hypervolumes
-  std::string unit;  ///< of the objective
+  std::string unit;  ///< unit of the first objective
   int feasible_seeds = 0;
   std::vector<Row> rows = {{"seed", pareto ? "hypervolume" : "best", "exact", "evaluations", "time", "file"}};
   std::vector<double> best = {}, exact = {}, seconds = {};

@@ -13,8 +13,8 @@
 namespace pkm {
 namespace {
 
-/// Reports the derivatives, per mm of lengths and per degree of angles: a row for each parameter that has an influence,
-/// in decreasing order of the influence on the first quantity.
+/// Reports the derivatives of all quantities, per mm of lengths and per degree of angles: a row for each parameter that
+/// has an influence, in decreasing order of the influence on the first quantity.
 void report_gradients(const std::vector<Parameter>& parameters, const std::vector<QuantityGradient>& gradients,
                       Printout& out) {
   std::vector<std::size_t> order(parameters.size());
@@ -112,7 +112,8 @@ struct SensitivityCommand : DesignArguments, SensitivityArguments {
   int threads = 0;
 };
 
-/// Contributions and worst cases of the machine as built, within the [tolerance] of the study.
+/// Reports contributions and worst cases for machines built within the tolerances of the table [tolerance] of the
+/// study.
 void report_built_machine(const Study& study, const std::vector<double>& parameters, Printout& out) {
   const DesignProblem& machine = *study.machine;
   if (const Unsupported reason = machine.why_no_derivatives())

@@ -29,8 +29,8 @@ Axes swept_axes(const WorkspacePlan& plan, const MechanismInfo& info, const Slic
 /// Reduces the range of each sliced coordinate to one thin cell. If no box is specified, it encloses the reachable
 /// poses. Throws ConfigError.
 /// @param plan          a plan with voxels
-/// @param ranges_given  for each swept coordinate, the value returned by set_grid(); set to false for sliced
-/// coordinates
+/// @param ranges_given  for each swept coordinate, true if its range was specified (see set_grid()); set to false for
+///   sliced coordinates
 void apply_slices(WorkspacePlan& plan, const Target& target, const Slices& slices, std::array<bool, 3>& ranges_given);
 
 }  // namespace pkm

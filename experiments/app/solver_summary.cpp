@@ -11,13 +11,13 @@
 namespace pkm {
 namespace {
 
-// Maximum number of rows of the table of starts, without and with a front.
+// Maximum number of rows of the table of multistart runs, without and with a front.
 constexpr std::size_t kMaxStarts = 12, kMaxStartsOnFront = 20;
 /// Sensitivities that are smaller than this, relative to the largest one of the same unit, are regarded as zero: they
 /// are due to the solver's incomplete convergence.
 constexpr double kZeroSensitivity = 1e-6;
 
-/// Table cells with the objective of a start at its first and at its last design: two cells or, with several
+/// Table cells with the objective of a multistart run at its first and at its last design: two cells or, with several
 /// objectives, one cell for each of them.
 Row objective_cells(const ProblemRecord& problem, const StageRecord& stage, const StartOutcome& start) {
   const auto first = static_cast<std::size_t>(start.first_row), end = static_cast<std::size_t>(start.end_row);

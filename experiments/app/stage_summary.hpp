@@ -26,7 +26,7 @@ Json front_json(const ProblemRecord& problem, const StageRecord& stage);
 
 /// The value of a variable: the name of a choice, or the number with its unit.
 std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value);
-/// The same in a given unit, without its name.
+/// The value of a variable: the name of a choice, or the number in a given unit, without the name of the unit.
 std::string variable_text(const ProblemRecord& problem, std::size_t variable, double value, const DisplayUnit& unit);
 Json variable_json(const ProblemRecord& problem, std::size_t variable, double value);
 

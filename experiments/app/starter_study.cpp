@@ -77,8 +77,8 @@ double rounded(double value, const std::string& unit) {
 /// A bound of a variable: a multiple of its default value, rounded, within the parameter's range.
 struct Bound {
   double value;
-  std::string text;  ///< as TOML
-  bool is_limited;   ///< true if the range of the parameter limits it
+  std::string text;  ///< the bound as TOML
+  bool is_limited;   ///< true if the range of the parameter limits the bound
 };
 Bound bound(double factor, const Parameter& p) {
   const double wanted = rounded(factor * p.nominal, p.unit), value = std::clamp(wanted, p.lower, p.upper);
@@ -107,7 +107,7 @@ std::vector<const Parameter*> first_few(std::vector<const Parameter*> parameters
 struct StarterStudy {
   std::vector<const Parameter*> variables;
   bool by_columns = false;
-  std::string why_method;   ///< the reason for the method, a comment
+  std::string why_method;   ///< comment that states why the method (columns or voxels) was selected
   std::string constraints;  ///< further tables of the study
 };
 

@@ -14,7 +14,7 @@
 namespace pkm {
 namespace {
 
-constexpr std::string_view kExactSuffix = ", exact";  // of the name of a line of exact values, see DesignTable
+constexpr std::string_view kExactSuffix = ", exact";  // end of the name of a table line with exact values
 
 /// Returns true if the row of exact values prints no more than the row of the values by voxels before it.
 bool repeats(const Row& exact, const Row& voxels) {
@@ -67,7 +67,8 @@ std::vector<Row> table(const StudyContents& contents, const Study& study) {
   return rows;
 }
 
-/// A sentence on an active bound or constraint; in the file it has the bounds of variables in SI units.
+/// A sentence on an active bound or constraint for the terminal; the sentence in the study file states bounds in SI
+/// units.
 std::string active_text(const ProblemRecord& problem, const std::string& sentence) {
   for (const Variable& v : problem.variables)
     for (const auto& [which, bound] : {std::pair(" at its lower bound ", v.lower), {" at its upper bound ", v.upper}})

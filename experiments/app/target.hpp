@@ -26,7 +26,8 @@ struct DesignArguments {
 
 /// Declares --baseline, --generation, --individual, --front and --stage.
 void add_choice_options(CLI::App& command, DesignChoice& choice);
-/// Name of the first option of add_choice_options() that the command line gives; nullptr if it gives none.
+/// Name of the first option that selects a design (--baseline, --front ..) and that the command line gives; nullptr if
+/// it gives none.
 const char* first_given_option(const DesignChoice& choice);
 
 /// Declares an option such as --at, whose value is a list of NAME=VALUE, separated by commas. The option can be
@@ -112,7 +113,8 @@ Target find_target(const Session& session, const DesignArguments& arguments);
 /// Declares the arguments that select a design.
 /// @param arguments  receives the parsed values; must outlive `command`
 void add_design_arguments(CLI::App& command, DesignArguments& arguments);
-/// Declares the options among these arguments that change the design, and --json.
+/// Declares the options that select a design of a study file or change the design (--set, --limit, --masses), and
+/// --json.
 void add_design_options(CLI::App& command, DesignArguments& arguments);
 
 /// Adds a subcommand that analyses one design and prints the results.

@@ -11,7 +11,7 @@
 namespace pkm {
 namespace {
 
-/// The document of a study with the rows of the catalogues that its design chooses.
+/// The TOML document of a study, in which the choices from catalogues are replaced by the rows that the design selects.
 TomlValue with_rows_of_design(const TomlValue& study, const std::string& file_name, const Target& target) {
   std::vector<std::size_t> rows;
   for (const Choice& choice : target.study->problem->parts().choices)

@@ -63,8 +63,9 @@ bool touches(const WorkspaceFields& workspace, const std::array<bool, 3>& ranges
   return false;
 }
 
-/// Fields cost up to 100 times as much as the test whether a pose is feasible. If no file needs them at every cell,
-/// those of a finer grid than this one are computed on a grid with kPictureCells cells along each axis.
+/// Returns true if the fields are to be computed on a coarser grid, with kPictureCells cells along each axis: fields
+/// cost up to 100 times as much as the test whether a pose is feasible, and without files they are not needed at every
+/// cell.
 bool needs_coarse_fields(const WorkspacePlan& plan, const std::vector<std::string>& files) {
   double cells = 1, picture_cells = 1;
   for (const std::int64_t n : plan.voxels()->cells) {
@@ -123,7 +124,7 @@ std::vector<WorkspaceField> exact_fields(const Target& target, const WorkspaceAr
   return {};
 }
 
-/// Adds exact_fields() to the fields of a workspace; NaN at infeasible cells.
+/// Adds the fields of exact errors to the fields of a workspace; NaN at infeasible cells.
 void add_exact_fields(const Target& target, const WorkspaceArguments& arguments, WorkspaceFields& workspace) {
   if (arguments.fields.empty()) return;
   const std::vector<std::size_t> cells = workspace.feasible_cells();
@@ -196,6 +197,7 @@ std::optional<double> orientation_measure(const Target& target, const WorkspaceF
   return orientations->measure(map);
 }
 
+/// Adds the results of the workspace analysis to the output.
 /// @param of_fields  the workspace whose fields are reported: `workspace` itself, or the same on a coarser grid
 void report_workspace(const Target& target, const WorkspaceFields& workspace, const WorkspaceFields& of_fields,
                       Printout& out) {
@@ -284,7 +286,7 @@ std::string workspace(const Target& target, const WorkspaceArguments& arguments,
   for (const std::string& file : {arguments.svg, arguments.png})
     for (const std::string& picture : arguments.pictures(file)) files.push_back(picture);
   const Existing existing = if_forced(arguments.force);
-  // Throws std::runtime_error here, before any evaluation, if this build does not contain the page.
+  // Throws std::runtime_error here, before any evaluation, if this build does not contain the files of the HTML page.
   if (!arguments.html.empty()) page_assets();
   with_team(arguments.threads, [&] {
     WorkspacePlan plan = target.plan();

@@ -31,7 +31,7 @@ void add_workspace_outputs(CLI::App& command, WorkspaceOutputs& outputs);
 /// @param files  pairs of an extension, such as ".csv", and the variable that holds the value of its option
 void add_output_by_extension(CLI::App& command, const std::vector<std::pair<std::string, std::string*>>& files);
 
-/// Names of the files that write_workspace() will write.
+/// Names of the VTK and STL files that are to be written for a workspace.
 std::vector<std::string> output_files(const WorkspaceOutputs& outputs, const Target& target);
 
 /// Maximum number of cells for which fields are computed: a cell takes about 100 bytes of memory.
@@ -47,7 +47,7 @@ WorkspaceFields compute_fields(const Target& target, const WorkspacePlan& plan, 
 /// @param swept  names of the swept coordinates
 void expect_surface(const WorkspaceOutputs& outputs, const std::vector<std::string>& swept);
 
-/// Writes the files that output_files() lists. Throws StorageError, and std::runtime_error if the surface is empty.
+/// Writes the requested VTK and STL files. Throws StorageError, and std::runtime_error if the surface is empty.
 void write_workspace(const WorkspaceOutputs& outputs, const Target& target, const WorkspaceFields& workspace);
 
 }  // namespace pkm

@@ -55,6 +55,7 @@ template <int W>
   return bits;
 }
 
+/// Clears the bits of all cells outside the annulus, for kLanes lines at a time.
 /// @param words  number of words per row; if it is the compile-time constant 1, the compiler removes the loop over
 ///               words
 template <class L>

@@ -6,8 +6,8 @@
 namespace pkm::crr_cru {
 namespace {
 
-/// Ranges of x, y, z and phi: those of the box along the swept coordinates, and unrestricted ones where the box gives
-/// none.
+/// Ranges of x, y, z and phi: along the swept coordinates those of the box `swept`; the range of the fixed coordinate,
+/// and all ranges if there is no box, are unrestricted.
 PoseBox pose_box(const FixedCoordinate& fixed, const std::optional<Box>& swept) {
   PoseBox box = kEverywhere;
   if (!swept) return box;

@@ -22,8 +22,8 @@ struct ColumnScratch {
 };
 
 /// Adds derivatives to a critical value of the outer coordinate that was found by bisection. There, two critical points
-/// of the slice coincide (README.md); the implicit function theorem, applied to the equality of their u, gives the
-/// derivatives. These are 0 if neither a column nor a gap between columns vanishes at the value.
+/// of the slice coincide (README.md); the implicit function theorem, applied to the difference of their coordinates u,
+/// which is 0, gives the derivatives. These are 0 if neither a column nor a gap between columns vanishes at the value.
 /// @param plain     the design in double precision
 /// @param by_outer  the design with zero derivatives, for derivatives with respect to the outer coordinate
 /// @param at        the critical value
@@ -65,14 +65,14 @@ S lift_critical_value(const SlicedDesign<S>& s, const SlicedDesign<double>& plai
 }
 
 /// Fills scratch.intervals with the subintervals of the outer coordinate on which slices are not empty and have one
-/// combinatorial type. Decisions depend on values only, never on derivatives.
+/// combinatorial type. Where the subintervals end depends on values only, never on derivatives.
 /// @param plain     the design in double precision
 /// @param by_outer  the design with zero derivatives, for derivatives with respect to the outer coordinate
 template <class S>
 void find_outer_intervals(const SlicedDesign<S>& s, const SlicedDesign<double>& plain,
                           const SlicedDesign<Dual<1>>& by_outer, ColumnScratch<S>& scratch) {
-  // Triple intersections of circles are the only critical values of x without a closed form. Most critical values of
-  // phi have none.
+  // Triple intersections of circles are the only critical values of x without a closed form, but most critical values
+  // of phi have none, so that phi needs more samples.
   const int samples = s.axes.outer_is_phi ? 192 : 48;
   auto& values = scratch.critical_values;
   values.clear();
@@ -112,7 +112,7 @@ S area_at(const SlicedDesign<S>& s, const S& outer, ColumnScratch<S>& scratch) {
   return area(slice, scratch.decomposition);
 }
 
-/// Estimate of the rounding error of the integral of area_at() over the subintervals [m^3 or m^2 rad].
+/// Estimate of the rounding error of the integral of area_at() over the outer coordinate [m^3 or m^2 rad].
 template <class S>
 double roundoff(const SlicedDesign<S>& s, const std::vector<Subinterval<S>>& intervals) {
   if (intervals.empty()) return 0;

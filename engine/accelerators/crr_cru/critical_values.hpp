@@ -32,8 +32,8 @@ Slice<S> slice_at(const SlicedDesign<S>& s, const S& outer) {
                              : slice(s.design, s.positions, s.axes, outer);
 }
 
-/// Adds the critical values of phi: its bounds, given by the box and by the limit kappa_p >= c_min, and the values at
-/// which the fixed position is at an end of a slide's stroke.
+/// Adds the critical values of phi: its bounds, given by the box and by the limit kappa_p >= c_min, which excludes
+/// parallel singularities, and the values at which the fixed position is at an end of a slide's stroke.
 template <class S>
 void add_critical_values_of_phi(const SlicedDesign<S>& s, std::vector<CriticalValue<S>>& values) {
   const Geometry<S>& g = s.design.g;

@@ -9,7 +9,7 @@
 namespace pkm::crr_cru {
 
 /// Finds the assembly modes for given slide positions: "+" with cos(phi + delta) > 0, and "-" with cos(phi + delta) <
-/// 0. There is only one if both coincide, and none if |sin(phi + delta)| would exceed 1. phi is in (-pi, pi].
+/// 0. There is only one mode if both coincide, and none if |sin(phi + delta)| would exceed 1. phi is in (-pi, pi].
 inline std::vector<AssemblyMode> forward(const Geometry<double>& g, const AxisVector<double>& rho) {
   const Yaw<double> y = yaw(g);
   const double kappa = (rho[3] - rho[1] - y.a_0) / y.R;

@@ -1,7 +1,7 @@
 // (3CRR/R)&CRU and Quadrupteron: inertia of the limbs at the platform joints C_i, and of the platforms (README.md).
 //
-// Source: the paper cited in model.hpp, sections 2.2 to 3.1 with their errata. The form by limbs follows from the
-// principle of virtual work.
+// Source: the paper cited in model.hpp, sections 2.2 to 3.1 with their errata. The sum over the limbs that is used here
+// follows from the principle of virtual work.
 #pragma once
 
 #include "engine/accelerators/crr_cru/joint_inertia.hpp"

@@ -21,7 +21,8 @@ namespace pkm::crr_cru {
 
 enum class MassModel { table, geometry };
 
-/// Order of the parameters after the lengths: first those of every mass model, then those of the selected one.
+/// Order of the parameters after the lengths: first the parameters that every mass model has, then those of the
+/// selected mass model.
 enum ExtraIndex { kSlideMass = kParameters, kPayload, kPayloadOffset, kRadii, kFirstOfModel = kRadii + 3 };
 enum TableIndex {
   kRodMass = kFirstOfModel,    ///< first of the masses of the rods: m_11, m_12, m_21, .. m_42
@@ -46,7 +47,8 @@ enum GeometryIndex {
 template <class S>
 struct Masses {
   std::array<S, 4> m_1, m_2;  ///< for each limb, mass of the rod at the slide and of the rod at the platform [kg]
-  /// Moments of inertia of these rods about an axis through the rod's centre, normal to the plane of the limb [kg m^2].
+  /// For each limb, moment of inertia of the rod at the slide and of the rod at the platform about an axis through the
+  /// centre of the rod, normal to the plane of the limb [kg m^2].
   std::array<S, 4> I_1, I_2;
   /// Moving platform: mass [kg], moment of inertia about its centre [kg m^2], distance of the centre from D [m].
   S m, I_zz, c;

@@ -81,7 +81,7 @@ Geometry<S> geometry(Platform platform, std::span<const S> p) {
 }
 
 /// Thresholds of the constraints on poses: a pose is feasible if |sin theta_i2| >= s_min in all limbs and kappa_p >=
-/// c_min.
+/// c_min, where theta_i2 is the angle between the rods of limb i, and kappa_p is 0 at a parallel singularity.
 struct Limits {
   double s_min = 0, c_min = 0;
 };
@@ -92,7 +92,7 @@ inline Limits limits(const LimitSpec& spec) { return {spec.given[kSMin].value_or
 struct LimbAxes {
   std::size_t e, p, q;
   double p_sign, q_sign;
-  double sense;          ///< sign s of README.md, +1 or -1
+  double sense;          ///< sign s = e . (p x q), +1 or -1
   Vector3<double> rail;  ///< position of the rail divided by the length L
 };
 inline constexpr std::array<LimbAxes, 4> kLimbs = {{

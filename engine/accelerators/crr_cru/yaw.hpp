@@ -10,7 +10,7 @@ namespace pkm::crr_cru {
 /// Coefficients of the equation rho_4 - rho_2 = a_s sin phi + a_c cos phi + a_0, which determines phi.
 template <class S>
 struct Yaw {
-  S a_s, a_c, a_0;  ///< coefficients of the equation [m]
+  S a_s, a_c, a_0;  ///< coefficients of rho_4 - rho_2 = a_s sin phi + a_c cos phi + a_0 [m]
   S R;              ///< amplitude of a_s sin(phi) + a_c cos(phi): hypot(a_s, a_c) [m]
 };
 
@@ -22,7 +22,7 @@ Yaw<S> yaw(const Geometry<S>& g) {
   return {a_s, -across, S(0.0), sqrt_or_zero(S(a_s * a_s + across * across))};
 }
 
-/// The angle delta of README.md, by which phi is shifted, in (-pi, pi].
+/// The angle delta, in (-pi, pi], in the loop-closure equation rho_4 - rho_2 = R sin(phi + delta) + a_0.
 template <class S>
 S offset(const Yaw<S>& y) {
   return atan2(y.a_c, y.a_s);

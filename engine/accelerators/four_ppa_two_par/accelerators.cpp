@@ -255,8 +255,8 @@ class Analyses final : public ColumnAccelerator, public VoxelAccelerator {
 
  private:
   static bool serves(const WorkspacePlan& plan, const FieldRequest& request) {
-    // Samples also represent mirror images, in which the two sliders of a rail are exchanged; this requires equal
-    // rotors.
+    // Samples also represent mirror images, in which the two sliders of a rail are exchanged; this requires that the
+    // drives of the two sliders have equal rotor inertias.
     const std::vector<double>& rotors = request.rotors;
     const bool unequal = !rotors.empty() && (rotors[0] != rotors[1] || rotors[2] != rotors[3]);
     return sweeps(plan, {0, 2, 3}) && (request.mode.empty() || request.mode == "lower,lower") &&

@@ -43,7 +43,8 @@ double integral_of_stroke(const SlicedDesign<double>& d, const Slice<double>& t,
   return sum;
 }
 
-/// Total length [m] of those intervals of z in a column in which the links are clear, or its integral over y.
+/// Total length [m] of the intervals of z in a column in which the links are clear or, with `over_y`, the integral over
+/// y of this length [m^2].
 double measure(const SlicedDesign<double>& d, const Slice<double>& t, const Column<double>& column,
                const ClearanceTest& test, bool over_y, ClearanceScratch& scratch) {
   double sum = 0;

@@ -20,7 +20,8 @@ inline constexpr double kFinestClearTolerance = 1e-4;  ///< smallest relative to
 Integral<double> clear_volume(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y, double tolerance,
                               ColumnScratch<double>& scratch);
 
-/// Computes the same volume as clear_volume() by fixed quadrature rules in theta and delta, without an error estimate.
+/// Volume of the poses with sufficient clearance, as returned by clear_volume(), but by fixed quadrature rules in theta
+/// and delta, and without an error estimate.
 Integral<double> clear_volume_by_rule(const SlicedDesign<double>& d, const ClearanceTest& test, bool over_y,
                                       const GaussRule& theta_rule, const GaussRule& inner_rule,
                                       ColumnScratch<double>& scratch);

@@ -14,7 +14,7 @@
 
 namespace pkm::four_ppa_two_par {
 
-/// Scratch memory of tests.
+/// Scratch memory of clearance tests.
 struct ClearanceScratch {
   std::vector<ClosedInterval> clear;
   NonNegativeIntervals finder;

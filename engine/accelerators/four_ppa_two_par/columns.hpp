@@ -175,7 +175,8 @@ void find_height_intervals(const SlicedDesign<S>& d, const Slice<S>& t, const Co
   scratch.heights.push_back({S(0.0), column.length, true, true});
 }
 
-/// Selects the values that samples contain, with the data to compute them.
+/// Selects the values that each sample of a workspace analysis contains, and provides the data from which they are
+/// computed.
 template <class S>
 struct SampleContents {
   bool conditioning = false, poses = false, inertia = false;

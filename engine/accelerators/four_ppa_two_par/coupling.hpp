@@ -1,5 +1,6 @@
-// 4PPa-2PaR: joint-space inertia at a pose of the mode lower,lower, without J and M_X: twice the kinetic energy is a
-// sum of squares of velocities that are linear in those of the sliders. Derivation: README.md, Motion.
+// 4PPa-2PaR: joint-space inertia at a pose of the mode lower,lower, without the Jacobian J and the inertia matrix M_X
+// of the platform coordinates: twice the kinetic energy is a sum of squares of velocities that are linear in the
+// velocities of the sliders. Derivation: README.md, Motion.
 #pragma once
 
 #include "engine/accelerators/four_ppa_two_par/masses.hpp"

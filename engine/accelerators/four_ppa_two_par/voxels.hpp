@@ -25,7 +25,8 @@ struct VoxelPlane {
 };
 
 /// The part of a grid that has to be searched; by symmetry, it represents all cells. On the middle plane, y = L0/2,
-/// both limbs have the same stroke, so that the workspace is symmetric in theta and in x; the grid need not be.
+/// both limbs have the same stroke, so that the workspace is symmetric in theta and in x, although the grid may not be
+/// symmetric.
 struct GridPart {
   std::int64_t xs, thetas;  ///< numbers of x and of theta values, beginning with the first of the grid
   bool mirrored_x = false, mirrored_theta = false;
@@ -38,7 +39,7 @@ struct GridPart {
   }
 };
 
-/// Scratch memory of one thread.
+/// Scratch memory of one thread that searches a grid for feasible cells.
 struct VoxelWorker {
   ColumnBlock columns;
   ColumnConditioning<double> poses;

@@ -15,7 +15,7 @@ constexpr int kY = 1;  ///< index of the coordinate y, which the workspace analy
 
 struct AnalysisSettings {
   WorkingMode signs;
-  int branch;  ///< required sign of N2 (README.md), +1 or -1
+  int branch;  ///< required sign (+1 or -1) of the term N2 of the loop-closure equations (README.md)
   WorkspacePlan plan;
   FieldRequest request;
 };

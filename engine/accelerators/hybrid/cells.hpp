@@ -13,7 +13,7 @@ namespace pkm::hybrid {
 /// The columns along x at one beta. A plain struct, so that kernels share no inline code with files that are compiled
 /// for another instruction set.
 struct ColumnsAtBeta {
-  Product<double> C, Q, P, L, H;  ///< for each curve that bounds x in the slice, the square of its root
+  Product<double> C, Q, P, L, H;  ///< for each of these curves that bound x, the radicand of its square root
   double sign, lo_C, hi_C;        ///< limb C: sign of n3, and the constants of its two bounds of x
   double z_high, hole_end;        ///< maximum z of all columns; maximum z at which the feasible x has a hole
   double x_lower, x_step, cells;
@@ -33,8 +33,8 @@ struct CellTally {
   bool touches;  ///< true if a feasible cell is the first or the last of its column
 };
 
-/// Computes the runs for the z indices [first_z, end_z). The number of computed columns is rounded up to a multiple of
-/// kLanes.
+/// Computes the runs of feasible cells along x for the z indices [first_z, end_z). The number of computed columns is
+/// rounded up to a multiple of kLanes.
 template <InstructionSet set>
 CellTally fill(const ColumnsAtBeta& columns, CellRuns& runs);
 

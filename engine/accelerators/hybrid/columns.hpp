@@ -34,8 +34,8 @@ const Decomposition& decomposition_of(const Slice<double>& s, double beta, Colum
   return decomposition;
 }
 
-/// Fills scratch.intervals with the intervals of beta on which slices are not empty and have one type. Decisions depend
-/// on values only, never on derivatives.
+/// Fills scratch.intervals with the intervals of beta on which slices are not empty and have one combinatorial type.
+/// Where the intervals end depends on values only, never on derivatives.
 /// @param plain    the design in double precision
 /// @param by_beta  the design with zero derivatives, for derivatives with respect to beta
 template <class S>

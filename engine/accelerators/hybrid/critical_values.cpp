@@ -53,14 +53,16 @@ std::optional<Degeneracy> find_degeneracy(const SampledSlice& lower, const Sampl
     for (std::size_t i = 0; i < edge.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         if ((in_s[i] >= in_s[j]) == (in_t[i] >= in_t[j])) continue;
-        // The edges -x and x of one curve of the auxiliary chain intersect only where the root of the curve vanishes.
+        // The edges -x and x of one curve of the auxiliary chain intersect only where the square root in the formula of
+        // the curve vanishes.
         const bool opposite = edge[j].curve >= kCurveQ && edge[i].curve >= kCurveQ && edge[i].side != edge[j].side;
         if (!opposite)
           return Degeneracy{.kind = Degeneracy::Kind::edges, .first = at, .left = edge[j], .right = edge[i]};
       }
   }
-  // Otherwise, a strip vanishes. Take the shortest strip that exists on one side only. Prefer a strip whose pair of
-  // edges bounds no strip on the other side, because any other strip may exist on both sides with different bounds.
+  // If none of these degeneracies has been found, a strip vanishes: the shortest strip that exists in only one of the
+  // two samples. Strips whose pair of edges bounds no strip in the other sample are preferred, because any other strip
+  // may exist in both samples with different bounds.
   std::optional<Degeneracy> found;
   double shortest = std::numeric_limits<double>::infinity();
   const auto find_vanishing = [&](const Decomposition& here, const Decomposition& there, const auto& same) {

@@ -56,7 +56,7 @@ struct CriticalValueScratch {
 void find_beta_intervals(const SlicedDesign<double>& plain, const SlicedDesign<Dual<1>>& by_beta,
                          CriticalValueScratch& scratch);
 
-/// Index of the curve whose root vanishes at a bound of z; kCurves if there is none.
+/// Index of the curve whose square root vanishes at a bound of z; kCurves if there is none.
 inline std::size_t vanishing_curve(const StripBound& end) {
   if (end.kind == StripBound::Kind::hole) return kCurveH;
   if (end.kind == StripBound::Kind::intersection) return kCurves;
@@ -65,7 +65,7 @@ inline std::size_t vanishing_curve(const StripBound& end) {
   return end.index == kEndQ && end.kind == StripBound::Kind::lower ? std::size_t{kCurveQ} : std::size_t{kCurves};
 }
 
-/// The x of an edge at a bound of z, at which the root of the edge may vanish.
+/// The x of an edge at a bound of z, at which the square root in the formula of the edge may vanish.
 template <class S>
 S edge_at_end(const Slice<S>& s, const Edge& edge, const StripBound& end) {
   return edge.curve == vanishing_curve(end) ? S(0.0) : edge_at(s, edge, height(s, end));
@@ -73,7 +73,7 @@ S edge_at_end(const Slice<S>& s, const Edge& edge, const StripBound& end) {
 
 /// Returns true if the derivative of the area with respect to beta has a square-root singularity at a degeneracy, so
 /// that the area varies like the power 3/2 of the distance: at a tangency, or at a bound of z at which the radicand of
-/// a root is zero.
+/// a square root is zero.
 inline bool has_sqrt_singularity(const Degeneracy& degeneracy) {
   return degeneracy.kind == Degeneracy::Kind::tangency || vanishing_curve(degeneracy.first) != kCurves ||
          (degeneracy.kind == Degeneracy::Kind::heights && vanishing_curve(degeneracy.second) != kCurves);

@@ -38,7 +38,7 @@ template <class S, class Lengths, class Root>
   return j;
 }
 
-/// Jacobian of (s1, s3, s4) with respect to (x, z, beta length). The coordinate y is separate: its drive has the gain
+/// Jacobian of (s1, s3, s4) with respect to (x, z, beta * length). The coordinate y is separate: its drive has the gain
 /// 1.
 template <class S>
 [[gnu::always_inline]] inline std::array<std::array<S, 3>, 3> homogeneous_jacobian(const S& z, const Limbs<S>& j,

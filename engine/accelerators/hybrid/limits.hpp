@@ -21,9 +21,9 @@ enum LimitIndex { kTauSLimit, kTauPLimit, kTauCLimit, kClearanceMin, kLimits };
 template <class S>
 struct Limits {
   std::array<S, 4> s_min, s_max;  ///< minimum and maximum stroke of each drive [m]
-  S z_clear, beta_min, beta_max;  ///< minimum height [m], and range of beta [rad]
+  S z_clear, beta_min, beta_max;  ///< minimum height of O'' and C' above the base [m]; range of beta [rad]
   S tau_s, tau_p, tau_c;
-  SinCosOf<S> psiA, psiC, lam, mu, phi;  ///< sine and cosine of the maximum angles
+  SinCosOf<S> psiA, psiC, lam, mu, phi;  ///< sine and cosine of the maximum joint angles
   S gap, lw_min, lw_max;  ///< minimum distance of the carriages A and B; range of the length of the shaft [m]
 };
 

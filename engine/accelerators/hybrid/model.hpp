@@ -68,7 +68,7 @@ Geometry<S> geometry(std::span<const S> p) {
   return g;
 }
 
-/// Signs of n1, n2, n3, +1 or -1.
+/// Signs (+1 or -1) of n1, n2, n3: the components of the links of limbs A, B, C along their rails.
 using WorkingMode = std::array<int, 3>;
 
 /// Indices of the drives of limbs A, B and C.

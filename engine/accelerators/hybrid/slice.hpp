@@ -19,7 +19,7 @@ struct SlicedDesign {
   Geometry<S> g;
   Limits<S> l;
   WorkingMode signs;
-  int branch;               ///< required sign of N2 (README.md), +1 or -1
+  int branch;               ///< required sign (+1 or -1) of the term N2 of the loop-closure equations (README.md)
   std::array<S, 3> lo, hi;  ///< s_min and s_max of limbs A, B, C, plus the offsets of their carriages [m]
   S sine_s, cot_c;          ///< sqrt(1 - tau_s^2), sqrt(1 - tau_c^2) / tau_c
   S tan_phi, cot_phi;
@@ -115,14 +115,15 @@ struct Edge {
 };
 
 inline constexpr std::size_t kLowerEnds = 9, kUpperEnds = 9;  ///< number of lower and number of upper bounds of z
-/// Indices of those bounds of z at which the root of a curve vanishes: two for P, one (upper) for L, one (lower) for Q.
+/// Indices of those bounds of z at which the square root of a curve vanishes: two for P, one (upper) for L, one (lower)
+/// for Q.
 inline constexpr std::size_t kEndP1 = 2, kEndP2 = 3, kEndL = 7, kEndQ = 8;
 
 template <class S>
 struct Slice {
   std::array<Curve<S>, kCurves> curve;
-  /// Sign of the root in each bound of x, by side and curve: the bound is constants[side][curve] + sign * root of the
-  /// curve.
+  /// Sign of the square root in each bound of x, by side and curve: the bound is constants[side][curve] + sign * root
+  /// of the curve.
   std::array<std::array<double, kCurves>, kSides> signs;
   /// Constant term of each bound of x [m], by side and curve.
   std::array<std::array<S, kCurves>, kSides> constants;
@@ -179,7 +180,7 @@ Slice<S> slice(const SlicedDesign<S>& d, const S& beta) {
   s.hole_end = value_of(hole2) > 0 ? S(sqrt(hole2) - Q0) : none;
   s.upper[kEndQ] = all;
 
-  // Curves that bound x.
+  // Set the curves that bound x.
   const auto circle = [&](const S& radius, const S& foot) {  // a circle with its centre at z = foot
     return Curve<S>{{radius + foot, S(-1.0), radius - foot, one}};
   };

@@ -13,7 +13,7 @@ constexpr int kDepth = 16;
 
 constexpr double kRootTolerance = 1e-13;  // accuracy of heights that are computed in two ways [m]
 
-/// The roots of all curves at one value of z.
+/// The square roots in the formulas of all curves at one value of z.
 struct Node {
   double z;
   std::array<double, kCurves> root;

@@ -1,9 +1,9 @@
 // Hybrid robot: decomposition of a slice into strips, intervals of z over which x is between two curves.
 //
 // The active lower bound of x is the upper envelope of curves, and the active upper bound is a lower envelope; x is
-// feasible between them where the former is below the latter. Every curve is a constant plus or minus a root that is
-// concave in z. Tangents and chords can therefore prove that two curves do not intersect between two heights; without
-// such a proof, the interval is bisected. The intersections of active curves are the bounds of strips.
+// feasible between them where the former is below the latter. Every curve is a constant plus or minus a square root
+// that is concave in z. Tangents and chords can therefore prove that two curves do not intersect between two heights;
+// without such a proof, the interval is bisected. The intersections of active curves are the bounds of strips.
 //
 // The hole (-H, H) is excluded by subtracting two decompositions, one of which has H among its curves.
 #pragma once
@@ -49,7 +49,7 @@ struct Decomposition {
     none,
     below,
     all
-    /// In which part of the range of z the feasible x has a hole.
+    /// The part of the range of z in which the feasible x has a hole.
   } hole = Hole::none;
 };
 inline bool same_type(const Decomposition& p, const Decomposition& q) {

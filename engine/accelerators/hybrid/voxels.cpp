@@ -24,8 +24,8 @@ Box default_box(const SlicedDesign<double>& d) {
     box[0][0] = std::fmax(box[0][0], d.lo[i] + n[i][0]);
     box[0][1] = std::fmin(box[0][1], d.hi[i] + n[i][1]);
   }
-  // The direction to C' differs from that of limb C's rail by at most acos(K): beyond that, C' is out of reach of the
-  // limb.
+  // The direction to C' differs from that of limb C's rail by at most acos(K), with K below: for larger angles, C' is
+  // out of reach of the limb.
   const double k0 = g.e * g.e - g.L3 * g.L3 * (1 - l.tau_s * l.tau_s);
   const double near = std::hypot(g.d, d.z_low), far = std::hypot(g.d, d.z_high);
   const double r = k0 > 0 ? std::clamp(std::sqrt(k0), near, far) : near;

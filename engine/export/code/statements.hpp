@@ -17,8 +17,8 @@ namespace pkm::code {
 struct Syntax {
   std::string (*number)(double value, bool single_precision);
   std::string (*input)(const InputPlace& place);
-  /// An operation applied to operands, each of which is a name, a number or an expression in parentheses. If the result
-  /// contains operators, it is in parentheses, too.
+  /// Writes an operation applied to operands, each of which is a name, a number or an expression in parentheses. If the
+  /// result contains operators, it is in parentheses, too.
   std::string (*call)(const std::string& operation, const std::vector<std::string>& operands);
   /// Writes the definition of a constant, for example "const real t1 = a + b;".
   std::string (*define)(const std::string& name, const std::string& expression);

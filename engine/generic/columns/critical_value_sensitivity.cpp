@@ -16,7 +16,7 @@ bool are_near(const ArcEnd& x, const ArcEnd& y, const PlanarSliceScratch& scratc
   return std::fabs(x.v - y.v) < kCoincidence * scratch.v[1] && std::fabs(x.z - y.z) < kCoincidence * scratch.z[1];
 }
 
-/// Removes from both lists the endpoints that the other list contains, too.
+/// Removes from two lists of endpoints of arcs those endpoints that both lists contain.
 void remove_common(std::vector<ArcEnd>& x, std::vector<ArcEnd>& y, const PlanarSliceScratch& scratch) {
   std::erase_if(x, [&](const ArcEnd& end) {
     const auto same = std::ranges::find_if(y, [&](const ArcEnd& other) {
@@ -40,7 +40,8 @@ std::array<double, kMaxDegenerateCurves> dependency_factors(std::span<const Plan
   return along_t ? std::array{curves[1].t, -curves[0].t, 0.0} : std::array{curves[1].s, -curves[0].s, 0.0};
 }
 
-/// Whether the sum of factor times gradient of the curves is zero.
+/// Whether the gradients of the curves are linearly dependent with the given factors: the sum of factor times gradient
+/// is zero.
 /// @param size  magnitude of a gradient's terms, for comparison, if there is a single curve; otherwise 0
 bool are_dependent(std::span<const PlanarSliceSensitivity::Boundary> curves,
                    const std::array<double, kMaxDegenerateCurves>& factors, double size) {
@@ -60,7 +61,7 @@ std::vector<ArcEnd> arc_ends(const PlanarSlice& planar_slice, const PlanarSliceS
   planar_slice.for_each_arc_end(scratch, [&](EndLabel end, std::size_t first, double t) {
     const std::uint32_t surface = end >> 1U, label = vertex_of(surface, first, t, scratch);
     const Conic& P = scratch.conics[surface];
-    // At a turning point, both roots s are equal up to rounding errors.
+    // At a turning point of a conic, both roots s of its equation are equal up to rounding errors.
     const bool turns = (label & kKind) == kTurningPoint && !P.is_straight();
     const double s = turns ? -0.5 * (P.c[2] + t * P.c[4]) / P.c[5] : end_at(end, t, scratch);
     ends.push_back({label, surface, scratch.v[0] + scratch.v[1] * t, scratch.z[0] + scratch.z[1] * s});

@@ -7,8 +7,9 @@ namespace pkm::generic {
 namespace {
 
 constexpr int kMaxExtrapolations = 18;  // after this many extrapolations, bisection only
-// Maximum number of keys that occur in different numbers in the slices below and above the critical value, and of
-// features with these keys in a slice. If there are more, there are so many pairs that bisection is as fast.
+// Maximum number of feature keys that occur in different numbers in the slices below and above the critical value, and
+// of boundary features with these keys in a slice. If there are more, there are so many pairs that bisection is as
+// fast.
 constexpr std::size_t kMaxFeatures = 100;
 
 }  // namespace
@@ -25,7 +26,8 @@ void CriticalValueSolver::reset(bool features_persist) {
   extrapolations_ = 0;
 }
 
-/// Finds the keys that occur in different numbers in the slices below and above the critical value (changed_).
+/// Finds the keys of boundary features that occur in different numbers in the slices below and above the critical value
+/// (changed_).
 void CriticalValueSolver::compare() {
   for (std::size_t i = 0; i < 2; ++i) {
     keys_[i].clear();

@@ -19,7 +19,8 @@ struct BoundaryFeature {
   /// square root.
   std::uint64_t of;
   double t, s = 0;  ///< coordinates of the feature in the slice: t, and in planar slices s
-  /// false: the feature is a root of a constraint that does not bound the slice here, because others are violated.
+  /// false: the feature is a root of a constraint that does not bound the slice here, because other constraints are
+  /// violated.
   bool bounds = true;
 };
 using BoundaryFeatures = std::vector<BoundaryFeature>;
@@ -60,7 +61,7 @@ class CriticalValueSolver {
     SliceType type = 0;
     BoundaryFeatures features;
     bool is_known = false;
-    std::array<Point, 3> points;  ///< the last samples on this side, of which the first `count` are in use
+    std::array<Point, 3> points;  ///< last samples on one side of the critical value; `count` of them are in use
     int count = 0;
   };
 
@@ -75,7 +76,8 @@ class CriticalValueSolver {
   std::optional<double> zero_between(double low, double high, bool is_upper);
 
   std::array<Side, 2> sides_;
-  std::vector<std::uint64_t> changed_;  ///< keys that occur in different numbers below and above the critical value
+  /// Keys of boundary features that occur in different numbers below and above the critical value.
+  std::vector<std::uint64_t> changed_;
   /// Features with the keys in changed_, in the last sample below [0] and above [1] the critical value.
   std::array<BoundaryFeatures, 2> changed_features_;
   /// Keys, in ascending order, of the features that bound the slice in the last sample below [0] and above [1] the

@@ -9,7 +9,8 @@
 namespace pkm::generic {
 
 /// Label of an endpoint of a feasible interval of z. In planar slices: twice the index of the surface that bounds the
-/// interval, plus the index (0 or 1) of its root. In slices that are lines: see ColumnScratch.
+/// interval, plus the index (0 or 1) of its root. In slices that are lines: twice the index of the constraint that has
+/// its root there, plus 1 if this constraint decreases along z.
 using EndLabel = std::uint32_t;
 
 /// Points at a smaller distance, relative to the size of the slice, are merged.

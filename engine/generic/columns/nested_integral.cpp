@@ -20,11 +20,11 @@ constexpr double kMinWidth = 1e-12;
 constexpr double kMinResolvableWidth = 1e-6;
 constexpr double kMinResolvableWidthInLines = 1e-4;  // kMinResolvableWidth for slices that are lines
 constexpr std::size_t kMaxIntervals = 3000;
-// If, in so many consecutive bisections, nearly all of a change of the measure is in one half, the measure is
+// If, in this many consecutive bisections, nearly all of a change of the measure is in one half, the measure is
 // discontinuous there.
 constexpr int kBisectionsOfJump = 5;
-// At this depth of the subdivision and beyond, an interval is not divided at changes of the type if its error is at
-// most kNoise of what the tolerance permits for a workspace that fills the whole range.
+// At this depth of the subdivision and beyond, an interval is not divided at changes of the slice type if its error is
+// at most kNoise times the error that the tolerance permits for a workspace that fills the whole range.
 constexpr int kReliableDepth = 2;
 constexpr double kNoise = 0.01;
 // Tolerance of SmoothInterval::missed_at_ends, relative to the largest slice, if derivatives will be computed.
@@ -175,7 +175,7 @@ double NestedIntegral::find_univariate_changes(std::span<const double> inputs, I
   if (!(high > low)) return 0;
   find_sign_changes(program, 1, univariate_, low, high, kMaxEvaluations, scratch.univariate, scratch.changes);
   double unknown = scratch.changes.undecided;
-  // Do not search for critical values, because the measure would remain unknown.
+  // The undecided part of the range is so large that the measure remains unknown: do not search for critical values.
   if (unknown > kMaxUndecidedShare * (high - low)) scratch.max_evaluations = 0;
   for (std::size_t i = 1; i < plan().range.size() && unknown > 0; ++i) unknown *= std::fabs(range(i)[1] - range(i)[0]);
   return unknown;

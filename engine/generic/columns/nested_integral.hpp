@@ -42,7 +42,7 @@ struct CriticalValue {
   Slice below, above;
   bool is_box = false;
   /// Estimated error of the integral because a component may have been missed on one side, if the measure is
-  /// discontinuous here; otherwise 0.
+  /// discontinuous at this critical value; otherwise 0.
   double missed_error = 0;
 };
 
@@ -83,7 +83,7 @@ struct IntegralScratch {
     /// Critical values: [0] those in the whole range of the coordinate; [d] those in an interval at depth d of the
     /// subdivision.
     std::array<std::vector<CriticalValue>, kMaxDepth + 1> critical_values;
-    double at = 0;  ///< current value of the coordinate of this level
+    double at = 0;  ///< current value of this outer coordinate
     /// Intervals of this coordinate with non-empty slices, in ascending order, that were found at a value `outside` of
     /// the next outer coordinate.
     struct ExpectedIntervals {
@@ -95,10 +95,10 @@ struct IntegralScratch {
     std::vector<double> hints;     ///< values of this coordinate at which the component search expects feasible points
     std::vector<double> places;    ///< values of this coordinate at which the first slices are evaluated
     std::vector<Slice> scanned;    ///< slices at the coordinate values in `places`
-    double largest = 0;            ///< largest measure of the slices of this level so far
+    double largest = 0;            ///< largest measure of all slices at values of this outer coordinate so far
     double irreducible_error = 0;  ///< sum of those errors of intervals that further subdivision cannot reduce
     CriticalValueSolver solver;    ///< extrapolates the critical value that is being located
-    BoundaryFeatures features;     ///< boundary features of the slice of this level that was evaluated last
+    BoundaryFeatures features;     ///< boundary features of the slice of this outer coordinate that was evaluated last
   };
   PlanarSliceScratch planar_slice;
   ColumnScratch column;

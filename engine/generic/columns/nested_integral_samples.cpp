@@ -16,8 +16,8 @@ constexpr std::size_t kSparseRatio = 8;  // a workspace is sparse if at most one
 // kSamplesInside: of a single outer coordinate between the first and the last non-empty slice, to find narrow gaps.
 constexpr int kSamples[] = {40, 24}, kSamplesInLines[] = {kSamplesOfLines, 192, 12}, kSamplesInside = 240;
 
-/// Position of sample i of `places` samples in (low, high). They are not equidistant, because the critical values of a
-/// symmetric mechanism can have equal distances.
+/// Position of sample i of `places` samples in (low, high). The samples are not equidistant, because the critical
+/// values of a symmetric mechanism can have equal distances.
 double sample_position(double low, double high, int i, int places) {
   const double step = 0.618 * i;
   return low + (high - low) * (i + 0.4 + 0.2 * (step - std::floor(step))) / places;
@@ -131,8 +131,8 @@ void NestedIntegral::refine_support(IntegralScratch& scratch) const {
   std::ranges::sort(scanned, {}, &Slice::at);
 }
 
-/// Sets the hints of each inner coordinate to samples in those boxes that contain the value `at` of the outermost
-/// coordinate.
+/// Sets the hints of each inner coordinate, i.e. values at which feasible points are expected, to samples in those
+/// boxes of the component search that contain the value `at` of the outermost coordinate.
 void NestedIntegral::add_hints(double at, IntegralScratch& scratch) const {
   constexpr int kPlaces = 3;
   const ComponentSearch search(plan());

@@ -23,7 +23,8 @@ struct PlanarSliceScratch {
     bool touches = false;  ///< true: the vertex is an intersection of two conics that are tangent to each other there
     double s = 0;          ///< coordinate s of an intersection or turning point; 0 for other vertices
   };
-  /// A feasible interval of z, which exists in all columns of a piece, by the labels of its lower and upper endpoint.
+  /// A feasible interval of z, which exists in all columns of a piece (an interval of t), by the labels of its lower
+  /// and upper endpoint.
   struct Span {
     EndLabel lower, upper;
 
@@ -61,8 +62,8 @@ inline double end_at(EndLabel end, double t, const PlanarSliceScratch& scratch) 
   return place_on(scratch.conics[end >> 1U], static_cast<int>(end & 1U), t);
 }
 
-/// Provides endpoints of pieces and columns as numbers for PlanarSlice::for_each_node(); PlanarSliceSensitivity
-/// provides them with derivatives.
+/// Provides endpoints of pieces (intervals of t) and of columns as numbers for PlanarSlice::for_each_node();
+/// PlanarSliceSensitivity provides them with derivatives.
 struct PlanarSliceValues {
   using Scalar = double;
   const PlanarSliceScratch& scratch;

@@ -34,7 +34,8 @@ void PlanarSlice::add_gradient(double factor, std::span<double> registers, std::
       gradient[k][0] += g * columns;
       gradient[k][1] += g * columns * t;
       gradient[k][3] += g * columns * t * t;
-      // The coefficients of the terms with s are 0 for this design, but may not be 0 for neighbouring designs.
+      // The conic is a vertical line: the coefficients of its terms with s are 0 for this design, but may differ from 0
+      // for neighbouring designs.
       gradient[k][2] += g * first;
       gradient[k][4] += g * first * t;
       gradient[k][5] += g * second;

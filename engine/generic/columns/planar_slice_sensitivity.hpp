@@ -17,7 +17,7 @@ Dual4 differentiable_root(double at, const Components<4>& sum, double by);
 /// @param by  derivatives of the quantity with respect to the registers
 Components<4> tangent(std::span<const double> by, std::span<const Dual4> registers);
 
-/// Provides endpoints of pieces and columns with their derivatives with respect to the design for
+/// Provides endpoints of pieces (intervals of t) and of columns with their derivatives with respect to the design for
 /// PlanarSlice::for_each_node().
 class PlanarSliceSensitivity {
  public:

@@ -77,7 +77,8 @@ bool BoundaryCurve::find_graphs(const std::array<double, 2>& half_widths) {
   };
   for (const bool swapped : {false, true}) {
     swaps = swapped;
-    // With (t, s) = (x, y) or (y, x), the discriminant of h as a polynomial in s is q0 + q1 t + q2 t^2.
+    // With (t, s) = (x, y) or (y, x), the discriminant of the conic's function h as a polynomial in s is q0 + q1 t + q2
+    // t^2.
     const Samples &tt = swapped ? yy : xx, &ss = swapped ? xx : yy, &linear_t = values[swapped ? 1 : 0],
                   &linear_s = values[swapped ? 0 : 1];
     Samples q0, q1, q2, of_t;

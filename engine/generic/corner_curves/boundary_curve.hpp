@@ -23,7 +23,8 @@ struct Vector {
 inline double determinant(const Vector& g, const Vector& h) { return g.x * h.y - g.y * h.x; }
 
 /// A curve at one value of tau. (u, w) is the centre of a circle or the unit normal of a line; c is the squared radius
-/// of a circle, or the value of h at the origin for a line. Conic: h = xx x^2 + xy x y + yy y^2 + u x + w y + c.
+/// of a circle, or the value of the curve's function h at the origin for a line. Conic: h = xx x^2 + xy x y + yy y^2 +
+/// u x + w y + c.
 struct CurveAt {
   bool is_circle;
   double u, w, c;
@@ -113,7 +114,8 @@ struct Sampled {
 };
 
 /// Function that is positive where two circles, or a circle and a line, cross: the discriminant |b|^2 s - (b . m + c)^2
-/// with the common chord b . p + c = 0; for two lines the determinant of their normals, of either sign.
+/// of a circle with centre m and squared radius s, and the common chord b . p + c = 0; for two lines the determinant of
+/// their normals, of either sign.
 void discriminant(const BoundaryCurve& i, const BoundaryCurve& j, Sampled& result);
 
 /// Function that vanishes where three circles or lines meet in one point: the power of their radical centre, times the

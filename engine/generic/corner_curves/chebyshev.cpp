@@ -50,7 +50,7 @@ const Samples& chebyshev_nodes() {
 }
 
 void to_coefficients(const Samples& values, Samples& coefficients) {
-  // T_k is even or odd, so that two opposite nodes share the products with its values.
+  // T_k is even or odd, so that its values at half of the nodes are sufficient.
   static const Matrix table = [] {
     Matrix rows{};
     for (std::size_t n = 0; n < kNodes / 2; ++n)

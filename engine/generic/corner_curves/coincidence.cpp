@@ -23,7 +23,8 @@ bool is_outside(const CurveAt& curve, const CurveAt& other) {
   return largest > 0;
 }
 
-/// Determines the constant signs of a triple of curves of which two touch each other for all tau.
+/// For three curves of which two touch each other for all tau: appends to each of the two other pairs the constant sign
+/// which the touching curve that does not belong to the pair has at the crossings of the pair.
 /// @param pairs     pairs (0, 1), (0, 2) and (1, 2) of the triple
 /// @param touching  index (0 to 2) in `pairs` of the two curves that touch
 void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<std::size_t, 3>& triple,
@@ -42,15 +43,15 @@ void resolve_contact(const std::vector<BoundaryCurve>& curves, const std::array<
 }
 
 /// For a triple in which every two curves cross, and a pair of them: appends, for each branch of the pair's crossings,
-/// the constant sign of h of the third curve or, if the third curve does not pass through this branch for all tau,
-/// events.
+/// the constant sign of the function h of the third curve or, if the third curve does not pass through this branch for
+/// all tau, the values of tau at which it does (events).
 /// @param third  index of the third curve
 /// @param moved  index of that curve of the three which the perturbation moves outward
 /// @param roots  scratch memory
 /// @return false if the degeneracy is not supported
 bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std::size_t third, std::size_t moved,
                   std::vector<Root>& roots) {
-  // Samples at which the discriminant is smaller, relative to its maximum, are not used.
+  // Values of tau at which the discriminant of the pair is smaller, relative to its maximum, are not used as samples.
   constexpr double kWellConditioned = 0.01;
   constexpr double kCoincide = 1e-11;
   const Samples& d = pair.discriminant.values;
@@ -70,7 +71,7 @@ bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std
       largest = std::fmax(largest, std::fabs(h.values[n]));
       ++samples;
       // The perturbation moves the crossing along the other curve of the pair, to the point where h + epsilon = 0 for
-      // the moved one.
+      // the moved curve.
       const Vector along = curves[fixed].at_node(n).gradient(p);
       outside += third == moved || determinant(along, curves[third].at_node(n).gradient(p)) *
                                            determinant(along, curves[moved].at_node(n).gradient(p)) <

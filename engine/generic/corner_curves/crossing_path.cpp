@@ -276,7 +276,7 @@ Vector CrossingPath::at(double tau, const CurveAt& first, const CurveAt& second)
     const Vector g = first.gradient(p), h = second.gradient(p);
     const double at_first = first.h(p), at_second = second.h(p), d = determinant(g, h);
     const Vector change{(at_second * g.y - at_first * h.y) / d, (at_first * h.x - at_second * g.x) / d};
-    // Where the two curves touch each other, the step would magnify rounding errors.
+    // Where the two curves touch each other, a step of Newton's method would magnify rounding errors.
     if (!(std::fabs(change.x) + std::fabs(change.y) < 1e-6)) break;
     p = {p.x + change.x, p.y + change.y};
   }

@@ -35,11 +35,11 @@ void sample_curve(const BoundaryCurve& curve, const Subinterval<double>& range, 
 
 /// One crossing of a conic with another curve, as a function of tau in `range`.
 struct CrossingPath {
-  Subinterval<double> range;      ///< at an end with a square root the crossing merges with another one
-  std::array<Samples, 3> values;  ///< X, Y and W at the nodes of map_node()
+  Subinterval<double> range;      ///< range of tau; at an end with a square root, the crossing merges with another one
+  std::array<Samples, 3> values;  ///< homogeneous coordinates X, Y and W at the nodes of map_node()
   std::array<Samples, 3> series;  ///< Chebyshev coefficients of X, Y and W in the variable of map_node()
   std::size_t terms = kNodes;
-  double error = 0;  ///< interpolation error
+  double error = 0;  ///< interpolation error of `series`
 
   /// The crossing of the two curves, improved by Newton's method.
   Vector at(double tau, const CurveAt& first, const CurveAt& second) const;

@@ -289,7 +289,8 @@ class Builder {
       const double size = 1 + curves_[k].size[0] + curves_[k].size[1] + curves_[k].size[2];
       function_.rounding = (8 * kUnitRoundoff + path.error) * size;
     };
-    // Most paths violate a necessary constraint everywhere: try the one that is violated most at one point.
+    // Most paths violate a necessary constraint everywhere: examine first the constraint that the middle of the path
+    // violates most.
     std::size_t worst = count_;
     double largest = 0;
     for (std::size_t k = 0; k < count_; ++k) {
@@ -321,8 +322,8 @@ class Builder {
     return std::fabs(series[0]) > rest;
   }
 
-  /// Adds the events that conics pass through the crossings of two circles or lines. @return false if they are not
-  /// resolved
+  /// Adds events, i.e. the values of tau at which conics pass through the crossings of two circles or lines. @return
+  /// false if they are not resolved
   bool add_conic_events() {
     for (std::size_t p = 0; p < s_.pair_count; ++p) {
       Pair& pair = s_.pairs[p];
@@ -338,7 +339,8 @@ class Builder {
     }
     return true;
   }
-  /// Adds the events that a conic passes through one crossing in a range. @return false if they are not resolved
+  /// Adds events, i.e. the values of tau in a range at which a conic passes through one crossing. @return false if they
+  /// are not resolved
   bool add_conic_events(Pair& pair, std::size_t conic, std::int8_t branch, const Subinterval<double>& range,
                         int halvings) {
     constexpr int kMaxHalvings = 6;

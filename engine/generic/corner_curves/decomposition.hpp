@@ -31,7 +31,7 @@ struct ActiveRange {
   std::int8_t branch, weight;
   int path;                        ///< index in Decomposition::paths, if one of the two curves is a conic; otherwise -1
   double low, high;                ///< limits of the range of tau
-  bool root_at_low, root_at_high;  ///< true: the discriminant vanishes at this end
+  bool root_at_low, root_at_high;  ///< true: the discriminant vanishes at `low` or `high`
 };
 
 struct Decomposition {
@@ -49,7 +49,7 @@ struct DecompositionScratch {
   /// A value of tau at which a third curve passes through a crossing of a pair of curves: a root of a concurrence
   /// function.
   struct Event {
-    double at, width;    ///< value of tau and width of the undecided interval around it, see Root
+    double at, width;    ///< value of tau, and width of the undecided interval around it; 0: a simple root
     std::uint8_t third;  ///< index of the curve whose sign at the crossing may change
     /// For a pair of circles or lines: the branch (1 or -1) of the crossing through which the third curve passes; 0:
     /// both branches. For a pair with a conic: number of the crossing's path, from 1.
@@ -68,7 +68,8 @@ struct DecompositionScratch {
     std::uint8_t first, second;
     bool has_branches;
     bool has_conic;
-    std::size_t first_path, path_count;  ///< for a pair with a conic: the crossings in Decomposition::paths
+    /// For a pair with a conic: index in Decomposition::paths of its first crossing, and number of its crossings.
+    std::size_t first_path, path_count;
     Sampled discriminant;
     /// Roots in tau of the discriminant; between two consecutive ones the curves cross for all tau or for none.
     std::vector<Root> ends;

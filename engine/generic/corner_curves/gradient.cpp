@@ -149,8 +149,8 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
   }
 }
 
-/// Adds to s.adjoints what follows from the adjoint of v, a root of the function of a limit, by the implicit function
-/// theorem. To be called after evaluate_limits_at_t().
+/// Adds to s.adjoints the contributions of the adjoint of v, a root of the function of a limit, by the implicit
+/// function theorem. To be called after evaluate_limits_at_t().
 /// @param limit  index of the limit
 void Volume::add_limit_gradient(std::size_t limit, double v, double adjoint, Scratch& scratch) const {
   LimitScratch& s = scratch.segments.limits;

@@ -44,7 +44,8 @@ double potential(const CurveAt& curve, const Vector& p, double angle) {
   return -0.5 * curve.c * (curve.u * p.y - curve.w * p.x);
 }
 
-/// Derivatives of the area with respect to the functions of a curve, as integrals along the curve up to p.
+/// Derivatives of the area with respect to the functions u, w and c of a curve (of a conic also xx, xy and yy, see
+/// CurveAt), as integrals along the curve up to the point p.
 std::array<double, 6> potential_derivatives(const CurveAt& curve, const Vector& p, double angle) {
   if (curve.is_circle) return {p.y - curve.w, curve.u - p.x, 0.5 * angle};
   if (curve.is_conic) {
@@ -58,8 +59,8 @@ std::array<double, 6> potential_derivatives(const CurveAt& curve, const Vector& 
   return {l * (-curve.c * curve.u + 0.5 * l * curve.w), l * (-curve.c * curve.w - 0.5 * l * curve.u), l};
 }
 
-/// Direction of the cut of curve i, which is a circle. The cuts are behind all other curves, in the order of the
-/// circles.
+/// Direction from which angles on the circle with the index i are counted, i.e. of its cut. The cuts are behind all
+/// other curves, in the order of the circles.
 std::array<double, 2> cut_of(const std::vector<BoundaryCurve>& curves, std::size_t i) {
   if (!curves[i].is_circle()) return {1, 0};
   std::size_t at = 0;
@@ -126,7 +127,7 @@ class CellCurves {
   const BoundaryCurve &first_, &second_;
   std::array<std::array<double, 2>, 2> cuts_;
   double branch_;
-  const CrossingPath* path_;  ///< null: neither of the curves is a conic
+  const CrossingPath* path_;  ///< path of the crossing; null: neither of the curves is a conic
   std::array<double, kPoints> tau_{};
   std::array<std::array<double, 3 * kPoints>, 2> values_, quadratic_;
 };

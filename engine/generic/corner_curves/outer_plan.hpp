@@ -34,7 +34,7 @@ enum class Shape : std::uint8_t { constant, line, circle, strip_along_v, strip_a
 
 /// The shapes of the surfaces of a plan, and the functions that divide the range of its outer coordinate.
 struct OuterPlan {
-  std::vector<Shape> shapes;  ///< one element for each surface
+  std::vector<Shape> shapes;  ///< shape of each surface in a slice, by surface
   std::vector<OuterFunction> functions;
   std::string why_not;  ///< reason why corner curves cannot integrate the slices; "" if they can
 

@@ -94,7 +94,8 @@ void isolate_roots(const Samples& coefficients, double error, std::vector<Root>&
     const double middle = 0.5 * (interval.low + interval.high);
     lower.low = interval.low;
     lower.high = middle;
-    // Bound of the rounding errors of sums of products with a matrix, whose rows have sums of magnitudes below 4.6.
+    // Bound of the rounding errors of restrict_to_halves(), a product with a matrix whose rows have sums of magnitudes
+    // below 4.6.
     const double rounding = 4.6 * kUnitRoundoff * (0.5 * static_cast<double>(interval.terms) + 3) * (first + rest);
     lower.error = interval.error + rounding;
     lower.derivative_error = 0.5 * interval.derivative_error + markov(interval.terms) * rounding;

@@ -21,9 +21,9 @@ struct SegmentEnd {
   enum class Kind : std::uint8_t { box, function, fold, division };
   double at;
   Kind kind;
-  std::size_t function = 0;  ///< index in OuterPlan::functions; for a fold, the index of the limit
+  std::size_t function = 0;  ///< Kind::function: index in OuterPlan::functions; Kind::fold: index of the limit
   bool has_root = false;     ///< true: boundary curves behave like square roots of the distance from this endpoint
-  double v = 0;              ///< kind fold only: value of v at which the two roots merge
+  double v = 0;              ///< Kind::fold only: value of v at which two roots of the limit merge
 };
 
 struct Segment {
@@ -47,7 +47,7 @@ struct SegmentScratch {
   NodeValues nodes;
   std::vector<Sampled> functions;
   std::vector<Root> roots;
-  std::deque<Level> levels;       ///< one element for each recursion depth
+  std::deque<Level> levels;       ///< intervals that the recursive division examines, by recursion depth
   std::vector<Segment> segments;  ///< the first `count` elements are the segments of the design that was divided last
   std::size_t count = 0;
   DecompositionScratch decomposition;

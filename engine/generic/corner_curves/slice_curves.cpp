@@ -217,8 +217,8 @@ void SliceCurves::add_bound(BoundaryCurve& line, bool upper) {
   formula.bounds.push_back({at, !upper});
 }
 
-/// Adds the roots of limits as lines, and the condition that no point is feasible where a limit is violated between
-/// them.
+/// Adds the roots v of limits (constraints that do not depend on z) as lines, and the condition that no point is
+/// feasible where a limit is violated between them.
 bool SliceCurves::add_limits(const std::vector<LimitRoot>& roots) {
   std::size_t before = 0;  // index of the line at the previous root
   for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -394,7 +394,8 @@ SliceCurves::Status SliceCurves::build(const SlicePlan& plan, const OuterPlan& o
     add_bound(line, upper);
   }
   if (!add_limits(limits) || curves.size() > kMaxCurves) return Status::unresolved;
-  // Maximum interpolation errors; the one of limits is larger, because limits have larger rounding errors near folds.
+  // Maximum interpolation errors of boundary curves; that of limits (constraints that do not depend on z) is larger,
+  // because their roots have larger rounding errors near folds.
   constexpr double kConverged = 1e-12, kLimitConverged = 1e-10;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const bool is_limit = sources[i].kind == CurveSource::Kind::limit;

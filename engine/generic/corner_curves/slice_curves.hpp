@@ -1,9 +1,9 @@
 // Boundary curves of the slices of a segment of the outer coordinate, from the coefficients of the constraint surfaces
 // at the Chebyshev nodes.
 //
-// Surfaces that have one sign in a rectangle around the feasible part become constants of the formula, equal curves
-// become one, and curves that the rest of the formula does not contain are left out. All of this is decided by bounds
-// that hold in the whole segment.
+// Surfaces that have one sign in a rectangle around the feasible part become constants of the feasibility formula,
+// equal curves become one, and curves that the rest of the formula does not contain are left out. All of this is
+// decided by bounds that hold in the whole segment.
 #pragma once
 
 #include "engine/generic/corner_curves/boundary_curve.hpp"

@@ -13,7 +13,8 @@ inline Signs bit(std::size_t i) { return Signs{1} << i; }
 struct SliceFormula {
   /// For one boundary curve with the equation h = 0: the surfaces that are >= 0 on one side of it, as sets.
   struct Literals {
-    Signs outside = 0, inside = 0;  ///< sets of the surfaces that are >= 0 where h > 0, and where h < 0
+    /// Sets of the surfaces that are >= 0 where the function h of the curve is > 0, and where it is < 0.
+    Signs outside = 0, inside = 0;
   };
   /// A surface whose sign depends on two parallel lines. Between them, h > 0 for the first line and h < 0 for the
   /// second one. is_inside: the surface is >= 0 between the lines; otherwise it is >= 0 everywhere else.
@@ -28,7 +29,7 @@ struct SliceFormula {
   /// A curve on one side of which no point is feasible, independently of the formula.
   struct Bound {
     std::size_t curve;
-    bool outside;  ///< true: feasible points have h > 0; false: they have h < 0
+    bool outside;  ///< true: the function h of the curve is > 0 at feasible points; false: it is < 0
   };
 
   Formula formula;

@@ -77,7 +77,8 @@ void evaluate_limits_at_t(const SlicePlan& plan, double t, LimitScratch& scratch
 /// Evaluates the stage of SlicePlan::limits that depends on v; to be called after evaluate_limits_at_t().
 void evaluate_limits_at_v(const SlicePlan& plan, double v, LimitScratch& scratch);
 
-/// Result of find_limit_roots().
+/// Result of find_limit_roots(): the roots are found; a limit is violated in the whole segment; the segment has to be
+/// divided at folds; or shorter segments are needed.
 enum class LimitState { resolved, violated, divided, unresolved };
 
 /// Finds the roots along v of the active limits on a segment of the outer coordinate.

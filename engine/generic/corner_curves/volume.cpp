@@ -93,7 +93,8 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
     // the area that they enclose is of the order of its square. All three curves are affected by the same decision.
     double per_slice = decomposition.unbalanced + decomposition.undecided * 1e-12;
     // An arc in the frame is shorter than the perimeter of the frame, 8; its centre is displaced by at most sqrt(2)
-    // tails, and a conic by about the tails of its six coefficients, divided by the magnitude of its gradient.
+    // times the interpolation error (`tail`), and a conic by about the interpolation errors of its six coefficients,
+    // divided by the magnitude of its gradient.
     for (const BoundaryCurve& curve : segment.slices.curves) per_slice += (curve.is_conic() ? 200 : 12) * curve.tail;
     total.error += scale(segment) * per_slice * 0.5 * (segment.upper.at - segment.lower.at);
   }

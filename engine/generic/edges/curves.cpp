@@ -135,7 +135,8 @@ bool cylinder_and_other(const Face& cylinder, const Face& other, std::vector<Cur
   return true;
 }
 
-/// Curves on a torus as points of its meridians. On the meridian at the angle q they satisfy
+/// Adds the intersection curves of a torus with a sphere or plane, square |p|^2 + v . p + k = 0 for the vector p from
+/// the centre of the torus: in general as points of its meridians. On the meridian at the angle q they satisfy
 ///
 ///   cos b alpha + sin b beta = gamma,   alpha = xi + 2 square crank,   beta = v . axis,   xi = v . e_r(q),
 ///   gamma = -(square (crank^2 + rod^2) + k + crank xi) / rod,   D = alpha^2 + beta^2 - gamma^2.

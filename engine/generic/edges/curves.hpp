@@ -35,8 +35,9 @@ struct Curve {
   enum class Kind : std::uint8_t { trigonometric, line, on_torus, implicit };
   Kind kind = Kind::trigonometric;
   std::array<const Face*, 2> faces{};
-  Vector3 o{}, x{}, y{}, w{};  ///< coefficients of p(t); w is 0 for a curve without a square root
-  bool has_root = false;       ///< true: the curve has two branches, with +sqrt(D) and -sqrt(D)
+  /// Vectors in the formula of the points p(t); w is 0 for a curve without a square root.
+  Vector3 o{}, x{}, y{}, w{};
+  bool has_root = false;  ///< true: the curve has two branches, with +sqrt(D) and -sqrt(D)
   Trigonometric D{};
   std::optional<Affine> square{};  ///< |p|^2 as an affine function of p, if one of the surfaces is a sphere
   Quadric with{};  ///< on_torus only: function of the second surface, for the vector from the centre of the torus

@@ -125,8 +125,8 @@ Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoin
 
 const Rule& membership(const Body& body, const Part* face) {
   static const Rule single = rule_of([](const Bits& is) { return is[0]; });
-  // Rules by three indices: is_first_root; whether the range is at most half a turn; 0 for the body, or 1 + Part for a
-  // part of its boundary.
+  // Membership rules by three indices: is_first_root; whether the range is at most half a turn; 0 for the body, or 1 +
+  // Part for a part of its boundary.
   static const auto rules = [] {
     std::array<std::array<std::array<Rule, 4>, 2>, 2> all;
     for (const bool first : {false, true})

@@ -28,9 +28,9 @@ struct PreparedBody : Body {
   Vector3 beside{};                ///< crank only: the unit vector axis x zero
   std::array<Vector3, 2> end{};    ///< slide, crank: the rod's end E at q = from, and at q = to
   std::array<Vector3, 2> along{};  ///< slide, crank: unit vectors along the path of E at q = from, and at q = to
-  Affine height;                   ///< (p - centre) . axis; for a plane, p . axis
-  Affine distance;                 ///< |p - centre|^2 + crank^2 - radius^2 without its term |p|^2
-  /// For E at q = from, and at q = to: |p - E|^2 - rod^2 without its term |p|^2; and (p - E) . along.
+  Affine height;                   ///< (p - centre) . axis as a function of the point p; for a plane, p . axis
+  Affine distance;  ///< |p - centre|^2 + crank^2 - radius^2 without its term |p|^2, as a function of the point p
+  /// For the rod's end E at q = from, and at q = to: |p - E|^2 - rod^2 without its term |p|^2; and (p - E) . along.
   std::array<Affine, 2> from_end, ahead;
 };
 
@@ -62,8 +62,8 @@ struct CurvePoint {
 /// root of g is on the near side of the axis of a crank (slide: 1).
 inline constexpr std::size_t kFunctions = 6;
 Enclosure function(const PreparedBody& body, std::size_t number, const CurvePoint& at);
-/// The power of the unit of length in the unit of a body's function (see function()); its rounding error is estimated
-/// from it.
+/// The power of the unit of length in the unit of a body's function (see function()); the rounding error of the
+/// function is estimated from this power.
 std::size_t degree(const Body& body, std::size_t function);
 
 /// Set of combinations of the signs of a body's functions (see function()). In combination c, function i is positive if
@@ -89,8 +89,8 @@ Vector3 outward(const Face& face, const Vector3& p);
 
 /// Integrals over the area of a face, or of part of it; n is the unit outward normal, p the point.
 struct Moments {
-  Vector3 normal{};    ///< integral of n
-  Vector3 rotation{};  ///< integral of (p - centre) x n
+  Vector3 normal{};    ///< integral of the unit normal n over the area
+  Vector3 rotation{};  ///< integral of (p - centre) x n over the area
   /// Integrals of the speed with which the face moves along n as a radius grows with speed 1: [0] the radius or the
   /// rod, [1] the crank.
   std::array<double, 2> radius{};

@@ -198,7 +198,7 @@ class ProvenCurves : public ProvenSolid {
     for (const double sign : {1.0, -1.0}) add_line(arc, foot + across * (sqrt(square) * Interval(sign)), axis);
   }
 
-  // Curves on a torus, in boxes of the angles q and b.
+  // The following functions find curves on a torus, in boxes of the angles q of the crank and b around the fold.
 
   struct AngleBox {
     /// Lower and upper end of the range of the angle q, and of b. An end is a number, or an interval that contains a

@@ -100,7 +100,7 @@ struct ProvenArc {
   bool is_line = false, has_root = false, is_on_torus = false;
   IntervalVector o{}, x{}, y{}, w{};
   IntervalTrigonometric D{};      ///< coefficients of D as a trigonometric polynomial in t - t_0
-  Interval cosine = 1, sine = 0;  ///< cosine and sine of t_0
+  Interval cosine = 1, sine = 0;  ///< cosine and sine of t_0, the value of t at u = 0
   double direction = 0;           ///< 1 or -1: sign of s in s = +-u^2; 0: D(t_0) is not 0, and s = u
   Interval from{}, to{};          ///< lower and upper end of the range of u; each is an interval that contains the end
   std::size_t along = 0;          ///< on a torus: which angle is u; 0: q, 1: b

@@ -326,7 +326,7 @@ class Evaluator {
       ranges_.push_back({arc_, from, to, sign});
   }
 
-  // Sums over the active intervals.
+  // The following functions compute sums over the active intervals of the arcs.
 
   /// Checks whether the directed edges of each face form closed curves, and sets `gap` and `is_closed` of the result.
   void close() {

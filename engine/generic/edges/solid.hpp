@@ -25,7 +25,7 @@ struct Body {
   double radius = 0;
   double crank = 0;         ///< crank only: length of the crank
   double from = 0, to = 0;  ///< slide, crank: range of q; that of a crank is less than one revolution
-  double side = 1;          ///< sphere, cylinder: 1: the points inside, -1: those outside
+  double side = 1;          ///< sphere, cylinder: 1: the body is the inside of the surface; -1: the outside
   /// Slide, crank: true: of the two q at which the rod reaches the point, take the smaller one (branch "-").
   bool is_first_root = true;
 };

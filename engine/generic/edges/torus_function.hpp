@@ -23,7 +23,7 @@ class TorusFunction {
  public:
   struct Value {
     double f = 0;
-    std::array<double, 2> by{};  ///< derivatives of f with respect to q and b
+    std::array<double, 2> by{};  ///< derivatives of the function f with respect to the angles q and b
   };
   /// @param torus  a face that is the fold of a crank
   /// @param other  a face that is the fold of another crank, or a cylinder

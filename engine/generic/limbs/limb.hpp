@@ -35,7 +35,7 @@ struct Constraint {
 /// - both are in the range if the limb reaches B, and either f >= 0 at both ends and phi is in the range, or f <= 0 at
 ///   both ends and phi + pi is in the range.
 struct CrankRange {
-  Term at_min, at_max;  ///< values of f at q_min and at q_max
+  Term at_min, at_max;  ///< values of the loop-closure function f at q_min and at q_max
   /// >= 0 if the angle phi is at most half a revolution after q_min, and at most half a revolution before q_max,
   /// respectively.
   Term after_min, before_max;
@@ -49,7 +49,7 @@ struct CrankRange {
 /// move, but only along the axis.
 struct Arm {
   Vector3 arm;        ///< vector from the pivot to C, by formulas that contain square roots but no angles
-  Vector3 axis, rod;  ///< axis: unit vector; rod: vector from C to B
+  Vector3 axis, rod;  ///< axis: unit vector along the axis of rotation; rod: vector from the end C of the link to B
 };
 
 /// The annulus |crank - rod| <= |v| <= crank + rod that a planar crank and rod reach, as two quadratic constraints
@@ -90,24 +90,28 @@ struct Ends {
 };
 
 // In the following functions, the argument q is the joint coordinate as a variable of the loop-closure equation; the
-// formula q = .. in the comment becomes Limb::joint.
+// formula q = .. in the comment becomes Limb::joint. v is the vector from the joint on the base to that on the
+// platform.
 
-/// Telescope: q = |v|.
+/// Telescope: q = |v|, where v is the vector from the joint on the base to that on the platform.
 Limb telescope(const Ends& ends, const Term& q);
-/// Slide and rod: q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), where s = v . e.
+/// Slide and rod: q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), where s = v . e and v is the vector from the joint on the
+/// base to that on the platform.
 /// @param e  unit vector along the rail
 Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q);
-/// Slide without a rod: q = v . e. The joint on the platform moves along with the slide.
+/// Slide without a rod: q = v . e, where v is the vector from the joint on the base to that on the platform, which
+/// moves along with the slide.
 /// @param e  unit vector along the rail
 Limb slider(const Ends& ends, const Vector3& e, const Term& q);
-/// Slide and two links that move in the plane normal to e: q = v . e.
+/// Slide and two links that move in the plane normal to e: q = v . e, where v is the vector from the joint on the base
+/// to that on the platform.
 /// @param axis    unit vector e or -e, about which the angle of the links is counted
 /// @param branch  sign of the angle from the first link to the second one about `axis`
 Limb slider_and_links(const Ends& ends, const Vector3& e, const Vector3& axis, const Term& l_1, const Term& l_2,
                       const Term& branch, const Term& q);
-/// Crank and rod: q = atan2(w, u) + branch acos(k / h), where u = v . zero, w = v . (axis x zero), h = hypot(u, w) and
-/// k = (|v|^2 + crank^2 - rod^2) / (2 crank). The angle is wrapped to the revolution about the centre of the range, or
-/// about 0 if there is no range.
+/// Crank and rod: q = atan2(w, u) + branch acos(k / h), where v is the vector from the joint on the base to that on the
+/// platform, u = v . zero, w = v . (axis x zero), h = hypot(u, w) and k = (|v|^2 + crank^2 - rod^2) / (2 crank). The
+/// angle is wrapped to the revolution about the centre of the range, or about 0 if there is no range.
 /// @param axis, zero  orthogonal unit vectors: axis of rotation, direction of the crank at q = 0
 /// @param range       minimum and maximum angle [rad]
 Limb crank_and_rod(const Ends& ends, const Vector3& axis, const Vector3& zero, const Term& crank, const Term& rod,

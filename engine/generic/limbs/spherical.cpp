@@ -9,7 +9,7 @@ SphericalChain spherical_chain(const Vector3& u, const Vector3& v, const Vector3
   const auto middle = [&](const Term& cosine, const Term& sine) {
     return u * c_1 + (zero * cosine + beside * sine) * s_1;
   };
-  // w . v = cos(alpha_2) is A cos q + B sin q = C
+  // The condition w . v = cos(alpha_2) has the form A cos q + B sin q = C.
   const Term A = s_1 * dot(zero, v), B = s_1 * dot(beside, v), C = c_2 - c_1 * dot(u, v);
   const Term h = sqrt(A * A + B * B), root = branch * sqrt(h * h - C * C);
   const Vector3 w = middle((A * C - B * root) / (h * h), (B * C + A * root) / (h * h));

@@ -49,8 +49,10 @@ std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderK
 /// Bounds of the errors of the joint coordinates: errors of the joints themselves, plus errors of dimensions,
 /// multiplied by their effect on the joint coordinate at this pose.
 struct JointErrors {
-  std::vector<Term> bound;  ///< worst case: sum of the magnitudes of all contributions [m, rad]; by joint
-  /// Sum of the squares of all contributions, which is the variance if each is a standard deviation; by joint.
+  /// Worst case: sum of the magnitudes of all contributions to the error of a joint [m, rad]; by joint.
+  std::vector<Term> bound;
+  /// Sum of the squares of all contributions to the error of a joint, which is the variance if each contribution is a
+  /// standard deviation; by joint.
   std::vector<Term> squared_spread;
 };
 /// `accuracy` and `accuracy_rms` [m] of the origin of the platform, `accuracy_angle` and `accuracy_angle_rms` [rad] of

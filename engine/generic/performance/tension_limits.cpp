@@ -36,7 +36,7 @@ Term dot(const std::vector<Term>& x, const std::vector<Term>& y) {
 /// A pair of parallel faces of the zonotope of all drive forces that allowed tensions produce.
 struct Faces {
   std::vector<Term> normal;
-  std::vector<std::size_t> cables;  ///< cables whose columns do not lie in the face
+  std::vector<std::size_t> cables;  ///< cables whose columns of the matrix A do not lie in the faces
   std::vector<Term> along;          ///< components of the columns of `cables` along the normal
   Term sum;                         ///< sum of the absolute values of `along`
 };

@@ -16,8 +16,8 @@ namespace pkm::generic {
 
 /// The task of a robot: all poses of a box, or all instants of a motion.
 struct PoseSet {
-  std::vector<std::array<double, 2>> ranges = {};  ///< range of each coordinate; lower = upper fixes it
-  const Motion* motion = nullptr;                  ///< examined instead of `ranges`; null: `ranges` is examined
+  std::vector<std::array<double, 2>> ranges = {};  ///< range of each coordinate; lower = upper fixes a coordinate
+  const Motion* motion = nullptr;  ///< motion that is examined instead of `ranges`; null: `ranges` is examined
 };
 
 /// Deviations of parameters, which are independent of each other: each is at most a common scale times its size.
@@ -31,9 +31,11 @@ struct ToleranceProportions {
 struct ToleranceViolation {
   double scale = 0;                ///< maximum over the parameters of deviation / ToleranceProportions::sizes
   std::vector<double> parameters;  ///< values of all parameters of the robot [SI]
-  std::string constraint;          ///< name of the constraint that it violates, or of the singularity that it reaches
-  Pose<double> pose;               ///< pose at which this happens
-  std::optional<double> time;      ///< time in the motion at which this happens [s]; std::nullopt for ranges of poses
+  std::string constraint;          ///< name of the constraint that the robot violates, or of the singularity
+  Pose<double> pose;               ///< pose at which the robot violates the constraint or is singular
+  /// Time in the motion at which the robot violates the constraint or is singular [s]; std::nullopt for ranges of
+  /// poses.
+  std::optional<double> time;
 };
 
 struct CertifiedTolerances {

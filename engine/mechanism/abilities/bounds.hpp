@@ -15,11 +15,12 @@
 namespace pkm {
 
 struct BoundsOptions {
-  /// Target for upper minus lower bound, divided by their mean; the search stops when it is reached.
+  /// Target for upper minus lower bound, divided by their mean; the search for bounds stops when this target is
+  /// reached.
   double gap = 1e-2;
-  std::size_t max_boxes = 4000000;  ///< the search stops at this number of boxes
+  std::size_t max_boxes = 4000000;  ///< the search for bounds stops at this number of boxes
   std::string* proof = nullptr;     ///< receives the text of a proof of the bounds; null: no proof is written
-  std::function<bool()> stop = {};  ///< called often, by any thread; the search stops if it returns true
+  std::function<bool()> stop = {};  ///< called often, by any thread; the search for bounds stops if it returns true
 };
 
 struct VolumeBounds {
@@ -44,9 +45,11 @@ struct PoseSolid {
 struct PropertyResult {
   enum class Kind { holds, fails, undecided, not_examined };
   Kind kind = Kind::holds;
-  /// Name of the constraint or matrix for which the property fails or is undecided; if it was not examined: the reason.
+  /// Name of the constraint or matrix for which the property (feasibility or regularity) fails or is undecided; if the
+  /// property was not examined: the reason.
   std::string detail = {};
-  std::optional<Pose<double>> pose = {};  ///< a pose at which the property fails, or near which it is undecided
+  /// A pose at which the property (feasibility or regularity) fails, or near which it is undecided.
+  std::optional<Pose<double>> pose = {};
   /// The instant of the motion at which `pose` is attained [s]; std::nullopt for a box of poses.
   std::optional<double> time = {};
 };
@@ -64,8 +67,10 @@ struct Separation {
   enum class Kind { boxes, signs, undecided };
   /// What proves the separation: boxes without feasible poses, or different signs of a determinant at the two poses.
   Kind kind = Kind::undecided;
-  std::string detail = {};  ///< Kind::signs: name of the matrix; Kind::undecided: the reason
-  std::size_t boxes = 0;    ///< number of boxes examined
+  /// Kind::signs: name of the matrix whose determinant has different signs at the two poses; Kind::undecided: the
+  /// reason why nothing was proven.
+  std::string detail = {};
+  std::size_t boxes = 0;  ///< number of boxes examined
 };
 
 class RigorousBounds {

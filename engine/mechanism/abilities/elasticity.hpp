@@ -11,8 +11,9 @@ namespace pkm {
 /// Compliance of the platform: the displacement that a wrench causes. Wrenches and displacements have six components,
 /// along and about the x, y and z axes of the base frame, at the origin of the platform frame.
 struct PlatformCompliance {
-  AxisMatrix<double> supported;   ///< 6 x k, orthonormal basis of the wrenches that the mechanism can balance
-  AxisMatrix<double> compliance;  ///< k x k matrix in the basis `supported` [m/N, rad/(N m), ..]
+  /// Orthonormal basis of the wrenches that the mechanism can balance, as the columns of a 6 x k matrix.
+  AxisMatrix<double> supported;
+  AxisMatrix<double> compliance;  ///< k x k, in the basis of the k columns of `supported` [m/N, rad/(N m), ..]
 
   /// Returns true if the mechanism can balance every wrench; `supported` is then the identity. Otherwise the platform
   /// can move freely in some direction, or the pose is singular.

@@ -17,7 +17,8 @@ class SidedColumns {
   virtual std::shared_ptr<const Mechanism> on_side(std::int8_t side) const = 0;
 };
 
-/// Calls SidedColumns::on_side() of columns; null if they do not implement it.
+/// The mechanism restricted to poses on one side of its singularities, for an analysis by columns; null if the class of
+/// `columns` does not implement SidedColumns.
 template <class Columns>
 std::shared_ptr<const Mechanism> columns_on_side(const Columns& columns, std::int8_t side) {
   const auto* const sided = dynamic_cast<const SidedColumns*>(&columns);

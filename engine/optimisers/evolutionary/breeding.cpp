@@ -71,8 +71,9 @@ void Breeder::make_child(const ParentPool& pool, std::size_t first, std::size_t 
   snap_to_space(child);
 }
 
-// Appends the row of the child to `members`: a new row, or the row of an equal design that is already evaluated. Skips
-// a duplicate that cannot be made unique. Returns false if the child needs a new row and `max_new_rows` is 0.
+// Appends to `members` the row number that the child has in the evaluation table: a new row or, if an equal design is
+// already evaluated, the row of that design. Skips a duplicate that cannot be made unique. Returns false if the child
+// needs a new row and `max_new_rows` is 0.
 bool Breeder::add_child(std::uint32_t generation, std::uint32_t individual, std::span<double> child,
                         EvaluationTable& table, std::size_t max_new_rows, std::vector<std::int64_t>& members) {
   const std::int64_t known = evaluated_.find(table, child);

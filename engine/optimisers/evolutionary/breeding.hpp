@@ -13,14 +13,15 @@
 
 namespace pkm {
 
-/// Creates designs and appends them, not yet evaluated, to the table of one stage.
+/// Creates designs and appends them to the evaluation table of one stage, as rows that are not yet evaluated.
 class Breeder {
  public:
   Breeder(const BreedingPlan& plan, const DesignSpace& space, std::uint64_t seed)
       : plan_(plan), space_(space), seed_(seed) {}
 
   /// Creates the initial population: the given designs, projected onto the design space, then space-filling samples.
-  /// @param max_new_rows  maximum number of rows added to the table: 0, or at least the size of the population
+  /// @param max_new_rows  maximum number of rows added to the evaluation table: 0, or at least the size of the
+  ///   population
   /// @param members  receives the row numbers of the population
   void create_initial_population(const std::vector<StartDesign>& given_designs, EvaluationTable& table,
                                  std::size_t max_new_rows, std::vector<std::int64_t>& members);

@@ -7,8 +7,8 @@
 namespace pkm {
 namespace {
 
-// Values of the word options of breeding_options(); the position of each value is the number of the enumerator that it
-// selects.
+// Permitted values of those options of breeding_options() that are words; the position of each value is the number of
+// the enumerator that it selects.
 const std::vector<std::string> kSamplingMethods = {"sobol", "latin-hypercube", "random"};
 const std::vector<std::string> kSelections = {"tournament", "linear-ranking"};
 const std::vector<std::string> kCrossovers = {"differential", "sbx", "blend", "scattered"};

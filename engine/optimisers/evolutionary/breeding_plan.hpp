@@ -26,7 +26,8 @@ struct BreedingPlan {
 std::vector<OptionSpec> breeding_options();
 BreedingPlan breeding_plan(Options options, const DesignSpace& space);
 
-/// Sets population and mutation_probability, whose default values depend on the number of variables, if they are unset.
+/// Sets the options `population` and `mutation_probability` if they are unset: their default values depend on the
+/// number of variables.
 void resolve_breeding(Options& options, const DesignSpace& space);
 
 }  // namespace pkm

@@ -15,12 +15,12 @@ class DesignHashSet {
   std::int64_t find(const EvaluationTable& table, std::span<const double> design) const;
   /// Prefetches the hash slot that find(design) will read, which is rarely in the processor's cache.
   void prefetch(std::span<const double> design) const;
-  /// Inserts a row of the table, whose design must not be in the set yet.
+  /// Inserts a row of the evaluation table, whose design must not be in the set yet.
   void insert(const EvaluationTable& table, std::size_t row);
 
  private:
-  /// A row of the table and the hash of its design. Comparing hashes first avoids most comparisons of designs, which
-  /// are far apart in memory.
+  /// A row of the evaluation table and the hash of its design. Comparing hashes first avoids most comparisons of
+  /// designs, which are far apart in memory.
   struct Slot {
     std::uint32_t hash = 0, row = kEmpty;
   };

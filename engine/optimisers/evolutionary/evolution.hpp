@@ -33,13 +33,13 @@ class SurvivorSelection {
  public:
   virtual ~SurvivorSelection() = default;
   /// Selects the next population from the current one and the evaluated `children`, which are given by their row
-  /// numbers in the stage's table.
+  /// numbers in the evaluation table of the stage.
   /// @return true if the generation made progress, for the stall criterion
   virtual bool update(const std::vector<std::int64_t>& children) = 0;
-  /// Row numbers of the population, best first.
+  /// Row numbers of the population in the evaluation table, best first.
   virtual const std::vector<std::int64_t>& population() const = 0;
-  /// Row number of the best design so far (with several objectives, of the compromise solution); -1 while there is
-  /// none.
+  /// Row number, in the evaluation table, of the best design so far (with several objectives, of the compromise
+  /// solution); -1 while there is none.
   virtual std::int64_t best_row() const = 0;
   /// Returns true if the run has reached the target that the study sets; the run then stops.
   virtual bool target_reached() const { return false; }

@@ -148,9 +148,11 @@ std::unique_ptr<Optimiser> make_nsga2(const Options& options, const DesignSpace&
 std::vector<OptionSpec> nsga2_options() {
   std::vector<OptionSpec> specs = evolution_options("the hypervolume");
   for (OptionSpec& spec : specs) {
-    // Differences of members from distant parts of the front, as in differential crossover, rarely improve a design.
+    // The default is not the differential crossover: differences of members from distant parts of the front rarely
+    // improve a design.
     if (spec.name == "crossover") spec.initial = "sbx";
-    // With a smaller tolerance, the hypervolume would increase almost without end.
+    // With a smaller tolerance, almost every generation would count as progress, because the hypervolume increases
+    // slightly.
     if (spec.name == "tolerance") spec.initial = 1e-4;
     if (spec.name != "population") continue;
     spec.initial = std::int64_t{100};

@@ -29,8 +29,8 @@ MultistartMerger::MultistartMerger(const SolverPlan& plan, const StageInput& inp
 bool MultistartMerger::merge() {
   while (!stopped_ && next_ < starts_.size()) {
     MultistartRun& run = starts_[next_];
-    // A start that still replays its recorded evaluations is not merged: it may deviate from the record, and is then
-    // restarted.
+    // While a run still replays recorded evaluations, its rows are not merged: the run may deviate from the record, and
+    // is then restarted.
     if (!run.ended && run.table.size() <= run.recorded.size()) break;
     while (!stopped_ && merged_rows_ < run.table.size()) stopped_ = !append_and_report(run.table, merged_rows_++);
     if (stopped_ || !run.ended) break;
@@ -74,7 +74,7 @@ void MultistartMerger::finish(MultistartRun& run) {
       best_ = ranked(input_.problem.objectives(), table_, static_cast<std::size_t>(archive_->compromise_row()));
   }
   finished_.push_back(std::move(outcome));
-  // Releases the memory of the merged rows; with several ranks, the other ranks still need them.
+  // Releases the memory of the merged rows; with several MPI ranks, the other ranks still need them.
   if (ranks::size() == 1) run.table = EvaluationTable();
   ++next_;
   merged_rows_ = 0;

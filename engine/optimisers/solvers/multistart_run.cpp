@@ -7,8 +7,8 @@
 namespace pkm {
 namespace {
 
-/// Restores the recorded starts. A finished start is not run again, unless it ended by an evaluation limit that has
-/// been raised since then.
+/// Restores the multistart runs that were recorded before the stage was interrupted. A finished run is not repeated,
+/// unless it ended by an evaluation limit that has been raised since then.
 void read_record(const SolverPlan& plan, const StageInput& input, std::vector<MultistartRun>& starts) {
   const auto restore = [&](std::size_t k, EvaluationTable table, const StartOutcome* outcome) {
     if (k >= starts.size() || table.size() < starts[k].recorded.size()) return;

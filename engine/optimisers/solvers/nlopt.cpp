@@ -59,7 +59,7 @@ bool uses_gradient(const Options& options) {
 
 using Handle = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, decltype(&nlopt_destroy)>;
 
-/// User data of a callback.
+/// Data that NLopt passes to a callback: the program and, for a constraint, its index.
 struct Callback {
   NonlinearProgram& program;
   nlopt_opt opt;

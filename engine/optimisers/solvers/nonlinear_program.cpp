@@ -32,7 +32,8 @@ const NonlinearProgram::Point* NonlinearProgram::evaluate(const double* u) noexc
       evaluate_new_row({clamped.data(), variables});
     }
     if (stop_ == Stop::not_finite) return nullptr;
-    // The point differs from the current one only in the epigraph variable t, so that no evaluation is needed.
+    // If the point still differs from the current one, only its epigraph variable t does, so that no evaluation is
+    // needed.
     if (clamped != current_unit_) {
       current_unit_ = clamped;
       update_point(row_, current_unit_.back());

@@ -2,8 +2,8 @@
 //
 // Solvers request objective, constraints and gradients in separate calls, often repeatedly. Each point is nevertheless
 // evaluated only once, with derivatives if the solver uses them. All evaluations are recorded in the table of the
-// start, so that a resumed run can replay them. The objective is divided by its magnitude at the start design, so that
-// solver tolerances are relative. Several objectives are scalarised (scalarised_problem.hpp).
+// multistart run, so that a resumed run can replay them. The objective is divided by its magnitude at the start design,
+// so that solver tolerances are relative. Several objectives are scalarised (scalarised_problem.hpp).
 #pragma once
 
 #include <chrono>
@@ -21,17 +21,17 @@
 
 namespace pkm {
 
-/// Limits of the evaluations and of the time of one start.
+/// Limits of the evaluations and of the time of one multistart run.
 struct StartLimits {
   std::int64_t evaluations = std::numeric_limits<std::int64_t>::max();
   std::optional<double> seconds;
 };
 
-/// Problem, evaluator and table of the solver run from one start.
+/// Problem, evaluator and evaluation table of the solver run from one start design.
 struct StartContext {
   const Problem& problem;
   Evaluator& evaluator;
-  EvaluationTable& table;  ///< evaluations of this start only; initially empty, the first row is the start design
+  EvaluationTable& table;  ///< evaluations of this run only; initially empty, the first row is the start design
   const Scalarisation& scalarisation;
   std::function<bool()> evaluated;  ///< called after each evaluation; a return value of false stops the solver
 };
@@ -66,11 +66,11 @@ class NonlinearProgram {
   }
 
   const ScalarisedProblem& scalarised() const { return *scalarised_; }
-  /// KKT residual of a row of this start, divided by the magnitude of the objective at this row or at the start design,
-  /// whichever is larger; NaN without derivatives.
+  /// KKT residual of a row of this multistart run, divided by the magnitude of the objective at this row or at the
+  /// start design, whichever is larger; NaN without derivatives.
   double optimality(std::size_t row) const;
 
-  /// Rank key of the best evaluation of this start, as ranked by the scalarised problem.
+  /// Rank key of the best evaluation of this multistart run, as ranked by the scalarised problem.
   const RankKey& best() const { return best_; }
 
  private:

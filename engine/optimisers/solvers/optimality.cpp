@@ -59,7 +59,7 @@ std::optional<std::vector<double>> project_onto_active_constraints(const std::ve
                                                                    std::span<const double> margins,
                                                                    std::span<const double> margin_jacobian,
                                                                    double activity_tolerance) {
-  // Value at which the projection places active constraints: slightly above 0, to allow for rounding errors.
+  // Value of the linearised active constraints at the projected point: slightly above 0, to allow for rounding errors.
   constexpr double kRoundingAllowance = 1e-14;
   const std::size_t n = point.size();
   std::vector<std::size_t> free, active;

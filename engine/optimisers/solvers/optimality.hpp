@@ -27,7 +27,7 @@ struct ActiveBound {
 };
 
 struct ActiveConstraint {
-  std::size_t margin = 0;  ///< index of the constraint among the margins
+  std::size_t margin = 0;  ///< index of the constraint among the constraint values
   double multiplier = 0;   ///< improvement of the objective per unit by which the constraint is relaxed, >= 0
 };
 

@@ -116,7 +116,8 @@ RankKey ScalarisedProblem::rank(std::size_t row) const {
   RankKey r{table_.status[row], 0, static_cast<std::int64_t>(row)};
   if (r.status == Status::failed) return r;
   const double total = violation(row);
-  // The result of a start must not be worse than the start design in any objective; otherwise it ranks as infeasible.
+  // The result of a multistart run must not be worse than the start design in any objective; otherwise it ranks as
+  // infeasible.
   if (r.status == Status::feasible && total > 0) r.status = Status::infeasible;
   r.value = r.status == Status::feasible ? value(row) : total;
   return r;

@@ -39,7 +39,7 @@ struct NlpPoint {
   bool usable = false;  ///< false: the evaluation failed, and the other members are meaningless
 };
 
-/// The scalarised problem of one start. Reads evaluations of the original problem from a table.
+/// The scalarised problem of one multistart run. Reads evaluations of the original problem from an evaluation table.
 class ScalarisedProblem {
  public:
   /// @param start  row of the evaluated start design, whose objective values f_i0 define constraints and scaling
@@ -51,20 +51,21 @@ class ScalarisedProblem {
   std::size_t dimension() const { return problem_.space().dimension() + (has_epigraph() ? 1 : 0); }
   std::size_t constraints() const;
 
-  /// Computes objective, constraints and derivatives of the nonlinear program from an evaluated row of the table.
+  /// Computes objective, constraints and derivatives of the nonlinear program from an evaluated row of the evaluation
+  /// table.
   /// @param epigraph  coordinate of t in [0, 1]; ignored if the program has no variable t
   void read(std::size_t row, double epigraph, NlpPoint& point) const;
   /// Coordinate, in [0, 1], of the smallest value of the variable t that is not below any scaled change g_i of an
   /// objective from the start design to this row; 0 if the program has no variable t.
   double epigraph(std::size_t row) const;
 
-  /// Rank key of a row as a candidate for the result of this start. It uses the objective values of the table, not the
-  /// smooth approximations that the solver minimises.
+  /// Rank key of a row as a candidate for the result of this multistart run. It uses the objective values of the
+  /// evaluation table, not the smooth approximations that the solver minimises.
   RankKey rank(std::size_t row) const;
   /// Sum of the violations of all constraints of the problem and of the constraints f_i <= f_i0, i.e. that no objective
   /// is worse than at the start design; 0 if all are satisfied.
   double violation(std::size_t row) const;
-  /// Scalarised objective of a row, computed from the objective values of the table.
+  /// Scalarised objective of a row, computed from the objective values of the evaluation table.
   double value(std::size_t row) const;
   /// Magnitude by which differences of value() are divided before they are compared with a tolerance.
   double scale_of(double value) const { return has_epigraph() ? 1 : std::fabs(value); }

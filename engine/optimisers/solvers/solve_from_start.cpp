@@ -78,10 +78,10 @@ SolverResult solve_repeatedly(const Solver& solver, NonlinearProgram& program, c
   return result;
 }
 
-/// Detects a wrong zero gradient: returns true if the gradient is 0 at a start in the interior of the bounds, although
-/// the objective has a non-zero derivative there. Compares with one central difference, along a direction in which
-/// symmetries of the variables do not cancel. At a true stationary point the difference is small compared with the
-/// second difference.
+/// Detects a wrong zero gradient: returns true if the gradient is 0 at a start design in the interior of the bounds,
+/// although the objective has a non-zero derivative there. Compares with one central difference, along a direction in
+/// which symmetries of the variables do not cancel. At a true stationary point the difference is small compared with
+/// the second difference.
 bool has_wrong_zero_gradient(NonlinearProgram& program) {
   constexpr double kStep = 1e-3;  // step of the difference quotient, in unit coordinates
   // Numerical errors of the objective are smaller than this, relative to its value.

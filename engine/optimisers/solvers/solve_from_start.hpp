@@ -11,8 +11,9 @@ namespace pkm {
 /// constraints.
 /// @param program  the nonlinear program, with the start design evaluated
 /// @param table  evaluations of `program`
-/// @param start_evaluated  false if several objectives are to be scalarised relative to a start whose evaluation failed
-/// @return the outcome of the start; nullopt if the run was interrupted
+/// @param start_evaluated  false if several objectives are to be scalarised relative to a start design whose evaluation
+///   failed
+/// @return the outcome of the run; nullopt if the run was interrupted
 std::optional<StartOutcome> solve_from_start(const Solver& solver, NonlinearProgram& program,
                                              const EvaluationTable& table, std::uint64_t seed, bool start_evaluated);
 

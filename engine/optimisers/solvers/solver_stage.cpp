@@ -15,7 +15,7 @@
 namespace pkm {
 namespace {
 
-/// One run of a solver stage, on this rank.
+/// One run of a solver stage, on this MPI rank.
 class SolverStageRun {
  public:
   SolverStageRun(const SolverPlan& plan, const StageInput& input, EvaluationTable& table)
@@ -26,7 +26,7 @@ class SolverStageRun {
     std::vector<std::size_t> unfinished;
     for (std::size_t k = 0; k < starts.size(); ++k)
       if (!starts[k].ended) unfinished.push_back(k);
-    // Merges the starts that had finished before a stage was resumed.
+    // Merges the multistart runs that had finished before a stage was resumed.
     if (unfinished.size() < starts.size() && is_rank_0()) merger_.merge();
     {
       ranks::Counter claims, stops;
@@ -44,7 +44,7 @@ class SolverStageRun {
  private:
   static bool is_rank_0() { return ranks::rank() == 0; }
 
-  /// Runs start number `k` on this thread.
+  /// Executes multistart run number `k` on this thread.
   void run_start(std::size_t k) {
     if (merger_.stopped()) return;
     MultistartRun& run = merger_.starts()[k];
@@ -94,13 +94,14 @@ class SolverStageRun {
     merge_and_check_stop();
   }
 
-  /// Merges finished rows after each evaluation. The caller must have locked the mutex.
+  /// Called after each evaluation. On MPI rank 0, appends all rows that can be appended in start order to the
+  /// evaluation table of the stage. The caller must have locked the mutex.
   /// @return false if the stage has to stop
   bool merge_and_check_stop() {
     if (ranks::size() > 1) {
       if (!is_rank_0()) {
-        // Only rank 0 decides when to stop; other ranks query its decision, not too often, because each query costs a
-        // message.
+        // Only MPI rank 0 decides when to stop; other ranks query its decision, not too often, because each query costs
+        // a message.
         const auto now = std::chrono::steady_clock::now();
         if (now - last_stop_query_ < std::chrono::milliseconds(100)) return !merger_.stopped();
         last_stop_query_ = now;
@@ -118,8 +119,8 @@ class SolverStageRun {
     return !merger_.stopped();
   }
 
-  /// Exchanges the results of all ranks, and whether the stage was stopped. A collective operation: all ranks must call
-  /// it.
+  /// Exchanges the results of all MPI ranks, and whether the stage was stopped. A collective operation: all ranks must
+  /// call it.
   void synchronise_ranks() {
     std::string mine;
     for (std::size_t k = 0; k < merger_.starts().size(); ++k)
@@ -147,7 +148,7 @@ class SolverStageRun {
   const StageInput& input_;
   EvaluationTable& table_;
   MultistartMerger merger_;
-  ranks::Counter* stops_ = nullptr;  ///< shared by all ranks; a count above 0 means that rank 0 has stopped the stage
+  ranks::Counter* stops_ = nullptr;  ///< shared by all MPI ranks; a count above 0: rank 0 has stopped the stage
   std::chrono::steady_clock::time_point last_stop_query_ = std::chrono::steady_clock::now();
 };
 

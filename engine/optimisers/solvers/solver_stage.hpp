@@ -6,8 +6,8 @@
 // solver. If a solver deviates from its record (on another processor, or with another version of the library), that run
 // is restarted with a warning.
 //
-// With several ranks, each rank claims the next unclaimed start and posts its result to rank 0; at the end of the stage
-// all ranks exchange all results. Only rank 0 reports progress and decides when to stop.
+// With several MPI ranks, each rank claims the next unclaimed run and posts its result to rank 0; at the end of the
+// stage all ranks exchange all results. Only rank 0 reports progress and decides when to stop.
 #pragma once
 
 #include <memory>
@@ -27,17 +27,17 @@ struct SolverResult {
 class Solver {
  public:
   virtual ~Solver() = default;
-  /// Runs the solver. The best recorded evaluation is the result of a start: the returned point is only a candidate,
-  /// and the returned status matters only if the KKT residual does not show convergence.
+  /// Runs the solver. The best recorded evaluation is the result of a multistart run: the returned point is only a
+  /// candidate, and the returned status matters only if the KKT residual does not show convergence.
   /// @param start  start point in the unit cube
   virtual SolverResult solve(NonlinearProgram& program, const std::vector<double>& start, std::uint64_t seed) const = 0;
 };
 
 struct SolverPlan {
   std::shared_ptr<const Solver> solver;
-  StartLimits limits;           ///< limits of each single start
+  StartLimits limits;           ///< limits of each multistart run
   std::int64_t starts = 1;      ///< maximum number of start designs that are taken from the stage's input
-  std::int64_t multistart = 0;  ///< number of additional starts from Sobol points
+  std::int64_t multistart = 0;  ///< number of additional runs, which start from Sobol points
   bool concurrent = true;       ///< true if several threads may call the solver library at once
   Detail detail = Detail::complete;
   Scalarisation scalarisation = {};  ///< how several objectives are combined; its ranges are set from the stage's input

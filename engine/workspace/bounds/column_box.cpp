@@ -209,8 +209,8 @@ void ColumnPruner::prune(ColumnBox& box, Scratch& scratch, std::vector<Step>* st
     if (divided) continue;
 
     const Interval all = grid_.length(segment.from, segment.to);
-    // Where a constraint may be undefined, it can be undecided on a segment of positive length however often this is
-    // bisected. Without outer coordinates, whose bisection is limited, this would then take very long.
+    // If a constraint may be undefined on a segment, it can remain undecided after any number of bisections. Such
+    // segments are not bisected below this size, because without outer coordinates this would take very long.
     const std::int64_t min_size = all_continuous ? 1 : ColumnGrid::kSteps >> 16U;
     if (may_bisect && size > std::max(min_bisected_size, min_size)) {
       split(segment.from + size / 2, segment.from + size / 2);

@@ -107,7 +107,8 @@ class ColumnPruner {
     std::int64_t expansion = 0;  ///< z_c, a step of the grid: approximately the root over the centre
   };
 
-  /// @param sides   sides of the box, and of the segment as the last one
+  /// Encloses the root of a constraint along z on a segment, for all x in a box.
+  /// @param sides   sides of the box along each axis; the last one is the segment
   /// @param centre  centre of the box
   Root enclose_root(std::size_t constraint, const Segment& segment, const IntervalBox& sides, const IntervalBox& centre,
                     Scratch& scratch) const;

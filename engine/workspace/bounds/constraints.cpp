@@ -11,7 +11,7 @@ using expression::Graph, expression::Groups, expression::Node, expression::Progr
 
 namespace {
 
-// Groups of the graph's inputs: one for inputs that are constant, and one for each axis.
+// Bits that state which inputs of the graph a value depends on: one bit for the constant inputs, and one for each axis.
 constexpr Groups kConstant = 1;
 constexpr Groups axis_group(std::size_t axis) { return 2U << axis; }
 

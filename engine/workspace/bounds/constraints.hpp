@@ -47,7 +47,7 @@ class Constraints {
   };
 
   /// @param axes    indices of the graph's inputs that are the axes
-  /// @param inputs  all inputs of the graph; those that are no axes keep these values
+  /// @param inputs  values of all inputs of the graph; inputs that are not axes keep these values
   Constraints(expression::Graph graph, const std::vector<NamedConstraint>& constraints, std::vector<std::size_t> axes,
               std::vector<Interval> inputs);
 

@@ -180,8 +180,8 @@ class DeviationBranchAndBound {
     const std::size_t poses = ranges_.size();
     for (const std::vector<double>* point : {&middle, &vertex})
       keep(search_.at_pose(k, std::span(*point).first(poses), known(), worker.scratch));
-    // at_pose() starts with gradients for zero deviations. If the constraint is far from linear, the worst corner may
-    // be another one: also search along the ray towards the vertex of the box.
+    // at_pose() starts with gradients for zero deviations. If the constraint is far from linear, the worst vertex of
+    // the box of deviations may be another one: also search along the ray towards `vertex`.
     std::vector<double> unused, direction(vertex.begin() + static_cast<std::ptrdiff_t>(poses), vertex.end());
     double scale = 0;
     for (const double d : direction) scale = std::max(scale, std::fabs(d));

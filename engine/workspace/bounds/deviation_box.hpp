@@ -24,7 +24,7 @@ struct DeviationBoxOptions {
 };
 
 struct DeviationBox {
-  double certified = 0;  ///< scale up to which all constraints are proved
+  double certified = 0;  ///< all constraints are proved for deviations |d_i| <= certified
   /// The known violation of the smallest scale; std::nullopt: none is known up to the largest scale.
   std::optional<Violation> violation;
   std::size_t boxes = 0;  ///< number of boxes examined

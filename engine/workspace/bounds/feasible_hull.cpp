@@ -11,7 +11,8 @@ using expression::Graph, expression::Groups, expression::Node, expression::Progr
 namespace {
 
 constexpr Groups kDesignGroup = 1, kAxesGroup = 2;
-/// Maximum number of operations of the proof that a slab is infeasible, and of the bisection of the bounded box.
+/// Maximum numbers of operations: for the proof that a slab (the part of a box beside one of its faces) is infeasible,
+/// and for the bisection of the bounded box.
 constexpr std::size_t kMaxWorkOfSlab = 20'000, kMaxWork = 3'000'000;
 /// Maximum number of passes over all faces of a box in which slabs of the same share of its width are cut.
 constexpr int kMaxRounds = 16;
@@ -137,7 +138,7 @@ class FeasibleHull::Search {
 
   std::size_t axes() const { return hull_.axes_.size(); }
 
-  /// @param open  on return without the constraints that are satisfied on the whole box
+  /// @param open  undecided constraints; those that are proven to be satisfied on the whole box are removed
   /// @return true if the box is proven to contain no feasible pose
   bool is_infeasible(const IntervalBox& box, Open& open) {
     ++version_;
@@ -189,7 +190,7 @@ class FeasibleHull::Search {
     return {Interval(side.lower, side.middle()), Interval(side.middle(), side.upper)};
   }
 
-  /// Adds a box unless it is infeasible.
+  /// Adds a box to `pieces_`, unless it is proven to contain no feasible pose.
   void add(Piece piece) {
     if (is_infeasible(piece.sides, piece.open)) return;
     add_feasible(piece);

@@ -39,7 +39,7 @@ class FeasibleHull {
   class Search;
   struct Constraint {
     std::uint32_t output;                          ///< register that holds the value of the constraint
-    std::vector<expression::Program::Step> steps;  ///< steps that depend on the axes
+    std::vector<expression::Program::Step> steps;  ///< program steps that depend on the axes
   };
 
   std::vector<std::size_t> axes_;

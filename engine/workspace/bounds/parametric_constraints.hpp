@@ -35,7 +35,7 @@ class ParametricConstraints {
 
   /// Adds constraints of one graph; identical ones are added once.
   /// @param axes    indices of the graph's inputs that are the axes, in the same order for all graphs
-  /// @param inputs  all inputs of the graph; those that are no axes keep these values
+  /// @param inputs  values of all inputs of the graph; inputs that are not axes keep these values
   void add(expression::Graph graph, const std::vector<ParametricConstraint>& constraints,
            const std::vector<std::size_t>& axes, std::vector<Interval> inputs);
 

@@ -43,7 +43,7 @@ std::vector<Interval> Matrices::entries(std::size_t k, const Scratch& scratch) c
 
 namespace {
 
-/// Midpoints of the entries; std::nullopt if one is undefined or unbounded.
+/// Matrix of the midpoints of interval entries; std::nullopt if one entry is undefined or unbounded.
 std::optional<AxisMatrix<double>> midpoint_matrix(std::span<const Interval> entries, std::size_t rows,
                                                   std::size_t columns) {
   AxisMatrix<double> midpoint(rows, columns);
@@ -157,7 +157,7 @@ namespace {
 
 struct Box {
   IntervalBox sides;
-  std::vector<std::size_t> open;  ///< undecided constraints
+  std::vector<std::size_t> open;  ///< indices of the undecided constraints
   bool is_regular = false;        ///< true if all matrices are proved to have full rank
   // Results of examine():
   bool is_outside = false;  ///< no pose of the box is in the solid
@@ -199,7 +199,7 @@ class PoseBranchAndBound {
     std::vector<Box> boxes = {all};
     while (!boxes.empty()) {
       parallel_for(boxes.size(), [&](std::size_t begin, std::size_t end, std::size_t worker) {
-        // The stop request is also tested within a round, which may take long.
+        // The stop request is tested for each box as well, because examining all boxes may take long.
         for (std::size_t i = begin; i < end && !stopped(); ++i) examine(boxes[i], scratch_[worker]);
       });
       found.boxes += boxes.size();

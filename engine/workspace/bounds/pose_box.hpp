@@ -26,7 +26,7 @@ namespace pkm::bounds {
 struct NamedMatrix {
   std::string name;
   std::size_t rows = 0, columns = 0;
-  std::vector<expression::Node> entries;  ///< row by row
+  std::vector<expression::Node> entries;  ///< elements of the matrix, row by row
 };
 
 /// Matrices of formulas, compiled to an interval program. Immutable and thread-safe.
@@ -36,7 +36,7 @@ class Matrices {
   using Scratch = std::vector<Interval>;
 
   /// @param axes    indices of the graph's inputs that are the axes
-  /// @param inputs  all inputs of the graph; those that are no axes keep these values
+  /// @param inputs  values of all inputs of the graph; inputs that are not axes keep these values
   Matrices(const expression::Graph& graph, const std::vector<NamedMatrix>& matrices, std::vector<std::size_t> axes,
            const std::vector<Interval>& inputs);
 
@@ -63,7 +63,8 @@ class Matrices {
   Scratch initial_;
 };
 
-/// Examines all poses of a solid, whose dimensions are those of the axes.
+/// Tries to prove for all poses of a solid over the axes that all constraints are satisfied and all matrices have full
+/// rank.
 /// @param matrices  null: regularity is not examined
 PoseCertificate certify(const Constraints& constraints, const Matrices* matrices, const PoseSolid& poses,
                         const BoundsOptions& options);

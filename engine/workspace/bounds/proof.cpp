@@ -98,7 +98,7 @@ class Formulas {
   std::ostream& to_;
   std::unordered_map<Node, std::string> names_;  ///< name or text by which a node is referred to
   std::unordered_map<Node, int> uses_;
-  std::unordered_set<Node> named_;  ///< constraints, and arguments of "turn" lines (angle wrapping)
+  std::unordered_set<Node> named_;  ///< nodes with a name: constraints, and arguments of angle wrapping
   std::size_t count_ = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace pkm::bounds {
 
-/// The statement to be proved.
+/// The statement to be proved: bounds of the volume in which all constraints are satisfied.
 struct Statement {
   const expression::Graph& graph;
   const Constraints& constraints;        ///< constraints on the graph's inputs

@@ -13,13 +13,13 @@ class ProofTree {
  public:
   void resize(std::size_t nodes) { nodes_.resize(nodes); }
   std::size_t size() const { return nodes_.size(); }
-  /// Appends steps to a node.
+  /// Appends proof steps to a node.
   void record(std::size_t node, const std::vector<Step>& steps);
   /// Bisects a node along `axis`. Its lower half is node `first_child`, its upper half the node after that.
   void bisect(std::size_t node, std::size_t axis, std::size_t first_child);
   /// Upper bound of the length of the text that append_to() appends.
   std::size_t bytes() const;
-  /// Appends one line per node, in depth-first order.
+  /// Appends to `text` one line per node, in depth-first order.
   void append_to(std::string& text) const;
 
  private:

@@ -100,7 +100,8 @@ class BranchAndPrune {
     }
     const std::optional<std::size_t> undecided = matrices_->first_undecided(part.sides, scratch.matrices);
     part.is_free = part.open.empty() && !undecided;
-    // Matrices before the first undecided one have full rank on the part, and a determinant of one sign.
+    // A matrix before the first undecided one has full rank on the part, so that its determinant has one sign there:
+    // that at the midpoint.
     IntervalBox middle = part.sides;
     for (Interval& side : middle) side = Interval(side.middle());
     for (std::size_t k = 0; k < undecided.value_or(matrices_->size()); ++k)
@@ -155,7 +156,7 @@ class BranchAndPrune {
       else if (contains(i, &SeparationAxis::to))
         separated = false;
     }
-    // From the last part to the first, because halves have higher indices than the parts they belong to.
+    // Visit the parts from the last to the first: the halves of a part have higher indices than the part.
     for (std::size_t i = parts_.size(); i-- > 0;)
       if (const std::size_t lower = parts_[i].child; lower != 0)
         parts_[i].is_removed = parts_[lower].is_removed && parts_[lower + 1].is_removed;

@@ -22,6 +22,7 @@ struct SeparationAxis {
   bool is_periodic;  ///< true: the range is a full revolution, so that its two ends are the same pose
 };
 
+/// Tries to prove that no path leads from the pose `from` of the axes to the pose `to`.
 /// @param matrices  square matrices whose determinants may not vanish along a path; null: none
 Separation separate(const Constraints& constraints, const Matrices* matrices, std::span<const SeparationAxis> axes,
                     const BoundsOptions& options);

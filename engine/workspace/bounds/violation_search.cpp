@@ -16,7 +16,8 @@ constexpr std::size_t kStarts = 16;     // number of pattern searches, in additi
 constexpr double kFinalStep = 1e-4;  // step at which a pattern search ends, relative to the ranges of the coordinates
 constexpr double kScaleAccuracy = 1e-7;     // relative accuracy of the scale of a violation along a ray
 constexpr double kGradientDistance = 1e-3;  // relative distance from a violation at which its gradient is computed
-// Violations are ignored if their first-order scale exceeds the limit by more than this factor.
+// A violation is not searched for at a pose if the first-order estimate of its scale exceeds the limit by more than
+// this factor.
 constexpr double kSearchedBeyondLimit = 1.5;
 
 double dot(std::span<const double> a, std::span<const double> b) {

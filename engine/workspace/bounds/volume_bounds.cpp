@@ -112,7 +112,7 @@ class BranchAndBound {
 
   void prune(std::size_t i, ColumnPruner::Scratch& scratch) {
     Leaf& leaf = leaves_[i];
-    // The stop request is also tested within a round, which may take long.
+    // The stop request is tested for each leaf as well, because pruning all selected leaves may take long.
     const bool skipped = options_.stop && options_.stop();
     std::vector<Step> steps;
     pruner_.prune(leaf.box, scratch, tree_ ? &steps : nullptr, skipped);
