@@ -18,6 +18,7 @@
 #include "engine/mechanism/availability.hpp"
 #include "engine/mechanism/redundant_drives.hpp"
 #include "engine/mechanism/sampled_poses.hpp"
+#include "engine/workspace/prepare_workspace.hpp"
 
 namespace pkm {
 namespace {
@@ -132,14 +133,28 @@ std::string why_no_masses(const Mechanism& mechanism) {
   return "";
 }
 
+/// The reason why the default analysis of the workspace cannot use columns; "" if it can.
+std::string why_no_columns(const Mechanism& mechanism) {
+  if (!mechanism.columns()) return mechanism.why_no_columns();
+  const MechanismInfo& info = mechanism.info();
+  try {
+    prepare_workspace(mechanism, {.method = ColumnOptions{}, .fixed = {}, .limits = no_limits(info)},
+                      {.mode = info.modes.front()});
+  } catch (const std::invalid_argument& reason) {
+    return reason.what();
+  }
+  return "";
+}
+
 void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_links_clear) {
   std::vector<std::vector<std::string>> can, cannot;
   const auto tell = [&](bool has, const char* what, const std::string& how, const std::string& why) {
     (has ? can : cannot).push_back({what, has ? how : why});
   };
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
-  tell(mechanism.columns(), "exact workspace by columns",
-       "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
+  const std::string no_columns = why_no_columns(mechanism);
+  tell(mechanism.columns() && no_columns.empty(), "exact workspace by columns",
+       "workspace.method = \"columns\", with derivatives by all parameters", no_columns);
   const LimitedDrives* const limited = find_limited_drives(mechanism);
   const bool has_cables = limited && !limited->cables().empty();
   tell(mechanism.bounds(), "certified bounds of the workspace",

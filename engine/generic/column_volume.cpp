@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "engine/core/stop.hpp"
+
 namespace pkm::generic {
 namespace {
 
@@ -61,6 +63,29 @@ CoordinateRanges box_of(const Sweep& sweep, std::size_t coordinates, const Colum
     for (std::size_t axis = 0; axis < sweep.swept.size(); ++axis)
       box[static_cast<std::size_t>(sweep.swept[axis])] = (*columns.box)[axis];
   return box;
+}
+
+/// Maximum number of interval operations of the analysis that decides whether columns with transcendental constraints
+/// are supported: about one second.
+constexpr long kMaxOperations = 30'000'000;
+
+/// Whether the analysis certainly exceeds kMaxOperations if all samples of the outermost coordinate take as many
+/// operations as the one in the middle of its range. It is much faster than the analysis itself.
+bool takes_too_long(const NestedIntegral& integral, std::span<const double> inputs, IntegralScratch& scratch) {
+  constexpr long kLimit = kMaxOperations / kSamplesOfLines;
+  return integral.operations_of_middle_slice(inputs, scratch, kLimit) >= kLimit;
+}
+
+/// The volume of the workspace; std::nullopt as soon as the interval operations reach the budget.
+std::optional<Integral<double>> measure_within(const NestedIntegral& integral, std::span<const double> inputs,
+                                               IntegralScratch& scratch, const NestedIntegral::Budget& budget) {
+  const StopScope limit([&] { return scratch.column.operations >= budget.operations; });
+  try {
+    return integral.measure(inputs, scratch, budget);
+  } catch (const Stopped&) {
+    if (limit.is_requested_by_outer_scope()) throw;
+    return {};
+  }
 }
 
 struct Plans {
@@ -156,12 +181,16 @@ SlicePlan ColumnVolume::choose_slices() const {
   const SlicePlan* best = nullptr;
   // Least work of the plans analysed so far, and limit of the work for the next plan: number of interval operations, or
   // of slices times surfaces. The first limit corresponds to about one second.
-  long least = has_curves ? 100'000'000 : 10'000'000;
+  long least = has_curves ? kMaxOperations : 10'000'000;
   for (const SlicePlan& plan : plans_) {
     const auto per_slice = static_cast<long>(plan.surfaces.size() + 8 * plan.independent.back().size());
     NestedIntegral::Budget budget;
     (has_curves ? budget.operations : budget.evaluations) = has_curves ? least : std::max(1L, least / per_slice);
-    const Integral<double> found = NestedIntegral(plan, tolerance).measure(inputs, scratch, budget);
+    const NestedIntegral integral(plan, tolerance);
+    if (has_curves && takes_too_long(integral, inputs, scratch)) continue;
+    const std::optional<Integral<double>> measured = measure_within(integral, inputs, scratch, budget);
+    if (!measured) continue;
+    const Integral<double>& found = *measured;
     // If the workspace of the default design is empty, the work gives no information about other designs.
     if (!has_curves && &plan == &first && found.value == 0) return first;
     const long work = has_curves ? scratch.column.operations : found.evaluations * per_slice;

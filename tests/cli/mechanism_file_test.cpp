@@ -330,10 +330,18 @@ unit = "1"
 }
 
 TEST_F(MechanismFile, WhoseColumnsTakeTooLongIsEvaluatedByVoxels) {
-  const auto found = run({"evaluate", PKM_TEST_DATA "/robots/coaxial-spherical.toml"});
+  const std::string file = PKM_TEST_DATA "/robots/coaxial-spherical.toml",
+                    reason = "mechanism coaxial-spherical has no exact columns that can be computed in seconds";
+  const auto found = run({"evaluate", file});
   EXPECT_EQ(found.exit_code, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr("method          voxels"));
-  EXPECT_THAT(found.out, HasSubstr("no exact columns that can be computed in seconds"));
+  EXPECT_THAT(found.out, HasSubstr(reason));
+  const std::string checked = run({"check", file}).out;
+  EXPECT_THAT(checked.substr(checked.find("not available, and why")),
+              HasSubstr("exact workspace by columns  " + reason));
+  const std::string supported = run({"check", PKM_TEST_DATA "/generic/three-cylinders-by-exponentials.toml"}).out;
+  EXPECT_THAT(supported, HasSubstr("exact workspace by columns          workspace.method = \"columns\""))
+      << "transcendental constraints that are computed in seconds";
 }
 
 TEST_F(MechanismFile, SaysWhetherItsVolumeDependsOnSamples) {

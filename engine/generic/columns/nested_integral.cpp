@@ -134,6 +134,17 @@ Integral<double> NestedIntegral::measure_all(std::span<const double> inputs, Int
   return {all.measure, all.error + unknown, evaluations};
 }
 
+long NestedIntegral::operations_of_middle_slice(std::span<const double> inputs, IntegralScratch& scratch,
+                                                long limit) const {
+  start(inputs, scratch, {.operations = limit});
+  scratch.levels[1].seen_count = 0;
+  scratch.is_scanning = true;
+  const auto [from, to] = plan().range[0];
+  slice(0, 0.5 * (scratch.registers[from] + scratch.registers[to]), scratch);
+  scratch.is_scanning = false;
+  return scratch.column.operations;
+}
+
 void NestedIntegral::start(std::span<const double> inputs, IntegralScratch& scratch, const Budget& budget) const {
   const expression::Program& program = plan().program;
   scratch.registers.resize(program.registers());

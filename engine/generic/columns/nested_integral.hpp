@@ -145,6 +145,9 @@ class NestedIntegral {
   Integral<double> measure(std::span<const double> inputs, IntegralScratch& scratch) const {
     return measure(inputs, scratch, Budget{});
   }
+  /// The number of interval operations that the slice in the middle of the range of the outermost coordinate takes; if
+  /// they exceed `limit`, little more than `limit`. At least one coordinate must be outer.
+  long operations_of_middle_slice(std::span<const double> inputs, IntegralScratch& scratch, long limit) const;
   /// Volume of the workspace with an estimate of its error. Locates critical values accurately enough for derivatives,
   /// and keeps the intermediate results that add_gradient() needs.
   Integral<double> measure_for_gradient(std::span<const double> inputs, IntegralScratch& scratch) const;
