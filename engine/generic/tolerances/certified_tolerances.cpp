@@ -144,7 +144,11 @@ class ToleranceProblem {
     };
     for (bounds::NamedMatrix& matrix : matrices) {
       eliminate_angles(graph, is_sign, matrix.entries);
-      for (const Node node : rank_conditions(graph, matrix)) all.push_back({matrix.name, node, true});
+      const std::vector<Node> conditions = rank_conditions(graph, matrix);
+      for (const Node node : conditions) all.push_back({matrix.name, node, true});
+      if (conditions.size() > 1) continue;  // the elements of a diagonal matrix
+      all.back().matrix = matrix.entries;
+      all.back().columns = matrix.columns;
     }
     add(made, std::move(graph), all, std::move(values));
     return made;
@@ -157,6 +161,8 @@ class ToleranceProblem {
     const Inputs& at = e_.model.inputs;
     std::vector<Node> roots;
     for (const ParametricConstraint& constraint : constraints) roots.push_back(constraint.node);
+    for (const ParametricConstraint& constraint : constraints)
+      roots.insert(roots.end(), constraint.matrix.begin(), constraint.matrix.end());
     std::vector<std::size_t> axes;
     if (poses_.motion)
       axes.push_back(substitute_motion(*poses_.motion, at, graph, values, roots));
@@ -174,7 +180,10 @@ class ToleranceProblem {
       deviating[parameter] = (input(parameters_[parameter]) + input(proportions_.sizes[i]) * deviation).node();
     }
     graph = expression::substitute_nodes(graph, deviating, roots);
-    for (std::size_t k = 0; k < roots.size(); ++k) {
+    auto entry = roots.begin() + static_cast<std::ptrdiff_t>(constraints.size());
+    for (ParametricConstraint& constraint : constraints)
+      for (Node& each : constraint.matrix) each = *entry++;
+    for (std::size_t k = 0; k < constraints.size(); ++k) {
       constraints[k].node = roots[k];
       if (constraints[k].is_strict && is_negative(graph, roots[k], axes, values))
         constraints[k].node = (-Term(graph, roots[k])).node();

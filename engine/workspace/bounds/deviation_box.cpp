@@ -111,6 +111,7 @@ class DeviationBranchAndBound {
     for (const std::uint32_t k : box.open) {
       Gradient& g = worker.gradient;
       if (constraints_.is_satisfied(k, constraints_.value(k, sides, worker.scratch))) continue;
+      if (constraints_.has_one_sign(k, sides, worker.scratch)) continue;
       constraints_.gradient(k, sides, g, worker.scratch);
       if (g.is_known && constraints_.is_satisfied(k, lower_bound(k, sides, worker))) continue;
       const double own = has_centre && g.is_known ? scale_of(k, sides, worker) : 0;

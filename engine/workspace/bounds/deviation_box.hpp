@@ -9,6 +9,9 @@
 // For derivatives with the enclosures G over a box, a constraint is bounded by
 //     g >= min of g over a vertex of the axes in which it is monotonic - sum |G_j| |x_j - c_j| over the others, and
 //     g >= min of g for d = 0 - t sum_i |G_i|, which gives a bound of t.
+// A determinant is also decided on a box where its matrix is proved to have full rank (pose_box.hpp): each parameter of
+// a single limb occurs in one row of the matrix, whereas the formula of the determinant multiplies the uncertainties of
+// all rows. The determinant then has one sign on the box; because boxes share their faces, it has the same sign on all.
 //
 // Reference: E. Hansen, G. W. Walster, "Global Optimization Using Interval Analysis", 2nd ed., Marcel Dekker, 2004.
 #pragma once

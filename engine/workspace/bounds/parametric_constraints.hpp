@@ -14,6 +14,10 @@ struct ParametricConstraint {
   std::string name;
   expression::Node node;
   bool is_strict = false;  ///< true: the constraint is g > 0; false: g >= 0
+  /// For a constraint on a determinant: the matrix that has full rank where the constraint is not 0, with at least as
+  /// many rows as columns, row by row. Empty: there is none.
+  std::vector<expression::Node> matrix = {};
+  std::size_t columns = 0;  ///< number of columns of the matrix
 };
 
 /// Constraints g >= 0 or g > 0 over poses and further variables. Immutable after the last call of add(), and then
@@ -58,6 +62,9 @@ class ParametricConstraints {
   /// @param sides  side of the box along each axis
   Interval value(std::size_t k, std::span<const Interval> sides, Scratch& scratch) const;
   void gradient(std::size_t k, std::span<const Interval> sides, Gradient& to, Scratch& scratch) const;
+  /// Whether the matrix of constraint k is continuous on a box and proved to have full rank there, so that the
+  /// constraint has the same sign in the whole box; false if there is no matrix.
+  bool has_one_sign(std::size_t k, std::span<const Interval> sides, Scratch& scratch) const;
   /// Value of constraint k at a point, in double precision; `by_axis` receives its derivatives with respect to the
   /// axes.
   double gradient(std::size_t k, std::span<const double> point, std::vector<double>& by_axis, Scratch& scratch) const;
@@ -72,6 +79,8 @@ class ParametricConstraints {
     bool is_strict;
     std::size_t graph;
     expression::Program value, gradient;
+    expression::Program matrix;  ///< entries of the matrix of a constraint on a determinant
+    std::size_t columns;         ///< number of columns of the matrix; 0: there is none
   };
 
   std::vector<OfGraph> graphs_;

@@ -54,7 +54,8 @@ std::optional<AxisMatrix<double>> midpoint_matrix(std::span<const Interval> entr
   return midpoint;
 }
 
-/// @return true if all matrices with these entries are proved to have full column rank
+}  // namespace
+
 bool has_full_rank(std::span<const Interval> entries, std::size_t rows, std::size_t columns) {
   const auto midpoint = midpoint_matrix(entries, rows, columns);
   if (!midpoint || is_rank_deficient(*midpoint)) return false;
@@ -82,6 +83,8 @@ bool has_full_rank(std::span<const Interval> entries, std::size_t rows, std::siz
   }
   return true;
 }
+
+namespace {
 
 /// Sign of the determinant by interval Gaussian elimination with partial pivoting; 0 if a pivot may be 0.
 /// @param a  n x n, row by row

@@ -29,6 +29,9 @@ struct NamedMatrix {
   std::vector<expression::Node> entries;  ///< elements of the matrix, row by row
 };
 
+/// @return true if all matrices with these entries, row by row, are proved to have full column rank
+bool has_full_rank(std::span<const Interval> entries, std::size_t rows, std::size_t columns);
+
 /// Matrices of formulas, compiled to an interval program. Immutable and thread-safe.
 class Matrices {
  public:

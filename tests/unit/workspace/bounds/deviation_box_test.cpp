@@ -69,6 +69,31 @@ TEST(DeviationBox, OfStrictAndUndefinedConstraints) {
   EXPECT_EQ(zero.certified, 0);
 }
 
+TEST(DeviationBox, OfADeterminantWithItsMatrix) {
+  // The matrix (1 + a, b; c, 1 + a) is singular if (1 + a)^2 = b c; of the smallest scale if 1 - t = t.
+  const auto determinant = [](bool has_matrix) {
+    Formulas formulas("xabc");
+    ParametricConstraint constraint{"det", formulas.read("(1 + a)*(1 + a) - b*c"), true};
+    if (has_matrix) {
+      for (const char* entry : {"1 + a", "b", "c", "1 + a"}) constraint.matrix.push_back(formulas.read(entry));
+      constraint.columns = 2;
+    }
+    ParametricConstraints made;
+    made.add(formulas.graph, {constraint}, formulas.positions, formulas.inputs());
+    return find(made, {{0, 1}});
+  };
+  expect_scale(determinant(true), 0.5);
+  EXPECT_LE(determinant(true).boxes, determinant(false).boxes);
+  // The matrix is regular, and its determinant is negative in the whole box: both are violations of det > 0.
+  Formulas formulas("xa");
+  ParametricConstraint negative{"det", formulas.read("-(1 + a)"), true, {formulas.read("-(1 + a)")}, 1};
+  ParametricConstraints made;
+  made.add(formulas.graph, {negative}, formulas.positions, formulas.inputs());
+  const DeviationBox found = find(made, {{0, 1}}, 0.5);
+  ASSERT_TRUE(found.violation);
+  EXPECT_EQ(found.violation->scale, 0);
+}
+
 TEST(DeviationBox, WithoutAViolation) {
   const DeviationBox found = find(constraints_of("xa", {"2 + x - a^2/100"}), {{-1, 1}}, 3);
   EXPECT_FALSE(found.violation);
