@@ -79,15 +79,25 @@ TorusFunction::TorusFunction(const Face& torus, const Face& other) {
     }
 }
 
-TorusFunction::Value TorusFunction::at(const std::array<double, 2>& q_b) const {
-  const auto [q, dq] = basis(q_b[0]);
-  const auto [b, db] = basis(q_b[1]);
-  Trigonometric at_b, at_db;
+TorusFunction::OfOneAngle::OfOneAngle(const TorusFunction& function, std::size_t fixed, double angle)
+    : c_(function.c_), fixed_(fixed), own_(basis(angle)) {
+  if (fixed_ == 1) set_b(own_[0], own_[1], at_b_, at_db_);
+}
+
+void TorusFunction::OfOneAngle::set_b(const Trigonometric& b, const Trigonometric& db, Trigonometric& at_b,
+                                      Trigonometric& at_db) const {
   for (std::size_t i = 0; i < 5; ++i) {
     at_b[i] = sum(c_[i], b);
     at_db[i] = sum(c_[i], db);
   }
-  return {sum(q, at_b), {sum(dq, at_b), sum(q, at_db)}};
+}
+
+TorusFunction::Value TorusFunction::OfOneAngle::at(double other) const {
+  const auto [value, slope] = basis(other);
+  if (fixed_ == 1) return {sum(value, at_b_), {sum(slope, at_b_), sum(value, at_db_)}};
+  Trigonometric at_b, at_db;
+  set_b(value, slope, at_b, at_db);
+  return {sum(own_[0], at_b), {sum(own_[1], at_b), sum(own_[0], at_db)}};
 }
 
 namespace {
@@ -199,12 +209,8 @@ CurveInBox find_curve_in(const TorusFunction& function, const TorusBox& box, dou
 
 Enclosure other_coordinate(const TorusFunction& function, const TorusArc& arc, const Enclosure& parameter) {
   const std::size_t along = arc.along, other = 1 - along;
-  const auto at = [&](double x) {
-    std::array<double, 2> q_b;
-    q_b[along] = parameter.value;
-    q_b[other] = x;
-    return function.at(q_b);
-  };
+  const TorusFunction::OfOneAngle across_arc(function, along, parameter.value);
+  const auto at = [&](double x) { return across_arc.at(x); };
   const auto [low, high] = arc.across;
   const double at_low = at(low).f, at_high = at(high).f;
   // At an end of the arc f can have the same sign at both limits of the other angle: the root is then at one of these

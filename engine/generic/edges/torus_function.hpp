@@ -30,9 +30,29 @@ class TorusFunction {
   TorusFunction(const Face& torus, const Face& other);
   TorusFunction() = default;
 
+  /// The function of one angle if the other one is fixed. It computes once what depends on the fixed angle only.
+  class OfOneAngle {
+   public:
+    /// @param fixed  which angle is fixed; 0: q, 1: b
+    /// @param angle  its value [rad]
+    OfOneAngle(const TorusFunction& function, std::size_t fixed, double angle);
+    /// Value of f and its derivatives at a value of the other angle [rad].
+    Value at(double other) const;
+
+   private:
+    /// Coefficients of f as a polynomial of q, and their derivatives by b.
+    /// @param b, db  functions of b and their derivatives
+    void set_b(const Trigonometric& b, const Trigonometric& db, Trigonometric& at_b, Trigonometric& at_db) const;
+
+    const std::array<Trigonometric, 5>& c_;
+    std::size_t fixed_;
+    std::array<Trigonometric, 2> own_;  ///< functions of the fixed angle [0], and their derivatives [1]
+    Trigonometric at_b_{}, at_db_{};    ///< if b is fixed: results of set_b()
+  };
+
   /// Value of f and its derivatives at a point of the torus.
   /// @param q_b  angle q of the crank and angle b around its fold [rad]
-  Value at(const std::array<double, 2>& q_b) const;
+  Value at(const std::array<double, 2>& q_b) const { return OfOneAngle(*this, 1, q_b[1]).at(q_b[0]); }
   /// Upper bound of the magnitude of the second derivative of f with respect to the coordinates i and j (0: q, 1: b).
   double bend(std::size_t i, std::size_t j) const { return bend_[i + j]; }
   /// Sum of the magnitudes of the coefficients, an upper bound of |f|.
