@@ -4,12 +4,12 @@
 #include <cmath>
 #include <span>
 
-#include "engine/core/catalogue.hpp"
 #include "engine/core/stop.hpp"
 #include "engine/core/unit.hpp"
 #include "engine/problem/largest_solid_options.hpp"
 #include "engine/problem/tied_parameters.hpp"
 #include "engine/results/active_constraints.hpp"
+#include "engine/runner/certificates.hpp"
 #include "engine/runner/design_record.hpp"
 #include "engine/runner/exact_values.hpp"
 #include "engine/runner/progress.hpp"
@@ -19,17 +19,8 @@
 namespace pkm {
 namespace {
 
-// Beginnings of the texts of notes. Notes of an earlier run are recognised by them and replaced.
+// Beginning of the texts of notes. Notes of an earlier run are recognised by it and replaced.
 constexpr const char* kWideBounds = "certified bounds of the ";
-constexpr const char* kAlong = "along the motion ";
-constexpr const char* kReduced = "reduced by 0.1 %, the ";
-
-// Relative reduction of the dimensions of a largest solid before it is certified; kReduced states it in notes.
-constexpr double kReduction = 1e-3;
-// Maximum numbers of boxes examined for each solid, and of time intervals examined for each motion; each of them takes
-// some seconds.
-constexpr std::size_t kMaxSolidBoxes = 600'000;
-constexpr std::size_t kMaxMotionBoxes = 200'000;
 
 /// Number of cells of the voxel map of a study whose workspace is analysed by columns.
 constexpr std::array<std::int64_t, 3> kMapCells = {32, 34, 60};
@@ -47,86 +38,6 @@ MapRecord map_record(const ProblemParts& parts, std::span<const double> paramete
   map.axes.resize(3);  // unused axes get empty names
   map.units.resize(3, "1");
   return map;
-}
-
-/// Certifies by interval arithmetic that a feasible design satisfies all pose-level limits along the motions that it
-/// has to follow, also between their samples. If a limit is proven to be violated, the design's status becomes failed;
-/// other results are added to the notes.
-void certify_motions(const ProblemParts& parts, const std::string& name, DesignRecord& design,
-                     std::vector<std::string>& notes) {
-  using Kind = PropertyResult::Kind;
-  for (const FollowedMotion& along : parts.followed) {
-    if (design.status != Status::feasible) return;
-    const std::string begin = kAlong + along.motion.name + " the " + name + " ";
-    try {
-      const PoseCertificate found = parts.mechanism->bounds()->motion(
-          design.parameters, parts.plan.limits, along.mode, *along.motion.at(design.parameters),
-          {.max_boxes = kMaxMotionBoxes, .stop = [] { return stop_requested(); }});
-      check_stop();
-      const PropertyResult& result = found.feasible;
-      const std::string when = result.time ? "t = " + with_unit(*result.time, "s") : "";
-      if (result.kind == Kind::holds)
-        notes.push_back(begin + "satisfies every limit of a pose at every instant (certified)");
-      else if (result.kind == Kind::undecided)
-        notes.push_back(begin + "may violate " + result.detail + " near " + when + ": undecided");
-      else {
-        design.status = Status::failed;
-        design.reason =
-            kAlong + along.motion.name + ", " + result.detail + " is violated at " + when + ", between its samples";
-      }
-    } catch (const std::invalid_argument& reason) {
-      notes.push_back(begin + "cannot be certified: " + reason.what());
-    }
-  }
-}
-
-/// Certifies by interval arithmetic the largest solids of a feasible design. They touch the boundary of the workspace,
-/// and are therefore reduced. If a limit is proven to be violated in one, the design's status becomes failed; other
-/// results are added to the notes.
-void certify_solids(const ProblemParts& parts, const std::string& name, DesignRecord& design,
-                    std::vector<std::string>& notes) {
-  using Kind = PropertyResult::Kind;
-  const RigorousBounds* const bounds = parts.mechanism->bounds();
-  if (!bounds || design.status != Status::feasible) return;
-  for (const NamedQuantity* const measure : solid_measures(parts)) {
-    const LargestSolidFinder& finder = *measure->quantity->largest_solid();
-    LargestSolid found = finder.find(design.parameters);
-    if (!(found.volume > 0)) continue;
-    for (double& dimension : found.solid.dimensions) dimension *= 1 - kReduction;
-    const std::string begin = kReduced + measure->name + " of the " + name + " ";
-    const auto place = [&](const PropertyResult& result) {
-      std::vector<std::string> words;
-      const auto& coordinates = parts.mechanism->info().coordinates;
-      for (std::size_t i = 0; i < coordinates.size(); ++i)
-        words.push_back(coordinates[i].name + " = " + with_unit((*result.pose)[i], coordinates[i].unit));
-      return join(words);
-    };
-    WorkspacePlan plan = parts.plan;
-    plan.limits = finder.limits();
-    std::string doubt;
-    bool is_regular = finder.is_regular();
-    try {
-      for (const PoseSolid& poses : finder.pose_solids(design.parameters, found.solid)) {
-        const auto [feasible, regular, boxes, stopped] = bounds->solid(
-            design.parameters, plan, "", poses, {.max_boxes = kMaxSolidBoxes, .stop = [] { return stop_requested(); }});
-        check_stop();
-        if (feasible.kind == Kind::fails) {
-          design.status = Status::failed;
-          design.reason = "in its " + measure->name + ", " + feasible.detail + " is violated at " + place(feasible);
-          return;
-        }
-        if (feasible.kind == Kind::undecided) doubt = feasible.detail + " is undecided near " + place(feasible);
-        is_regular = is_regular && regular.kind != Kind::not_examined;
-        if (is_regular && regular.kind != Kind::holds)
-          doubt = regular.detail + (regular.kind == Kind::fails ? ", at " : " is undecided near ") + place(regular);
-      }
-      notes.push_back(begin + (doubt.empty() ? std::string("is feasible ") + (is_regular ? "and not singular " : "") +
-                                                   "everywhere (certified)"
-                                             : "is not certified: " + doubt));
-    } catch (const std::invalid_argument& reason) {
-      notes.push_back(begin + "cannot be certified: " + reason.what());
-    }
-  }
 }
 
 /// Computes the exact values of the best design, then of the baseline. Notes on the baseline precede those on the best
@@ -199,8 +110,7 @@ void complete_final_record(const Study& study, StudyContents& contents,
   const ProblemParts& parts = problem.parts();
   FinalRecord& f = *contents.final;
   std::erase_if(contents.notes, [](const std::string& note) {
-    return note.starts_with(ExactValues::kNoValues) || note.starts_with(kWideBounds) || note.starts_with(kAlong) ||
-           note.starts_with(kReduced);
+    return note.starts_with(ExactValues::kNoValues) || note.starts_with(kWideBounds) || is_note_of_certificate(note);
   });
   if (f.best) {
     begin("map of the best design's workspace");

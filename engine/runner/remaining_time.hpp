@@ -8,22 +8,9 @@
 #include <vector>
 
 #include "engine/config/study.hpp"
+#include "engine/runner/run_cost.hpp"
 
 namespace pkm {
-
-/// Measured times that parts of a study take [s]; 0: unknown.
-struct RunCost {
-  double plain = 0, with_derivatives = 0;  ///< time of an evaluation without and with derivatives, on one thread
-  double final_steps = 0;                  ///< time of all final steps together (see final_record.hpp)
-  /// Time limit of the exact values of the final designs, if they were too slow to be measured; otherwise 0.
-  double exact_limit = 0;
-
-  static constexpr double kTimeLimit = 2;  ///< maximum time of the measurement of an evaluation [s]
-};
-
-/// Measures the costs of a study: evaluates the centre of the design space and the baseline, and uses the longer of the
-/// two times. The exact values of the final designs are measured only if they take less than some tenths of a second.
-RunCost measure_run_cost(const Study& study);
 
 /// @return maximum time of all stages together, computed from their evaluation limits [s]
 double max_stage_seconds(const Study& study, const RunCost& cost, int threads);

@@ -52,17 +52,19 @@ RunOutcome Run::complete() {
 // Writes the study file before the optional final steps (such as certified bounds), because these may take long.
 void Run::compute_final_results() {
   const StopScope stop([this] { return is_grace_period_over(); });
+  std::optional<SlowStepNotice> slow;
+  const auto begin = [&](const std::string& what) {
+    slow.reset();
+    slow.emplace([this, what] { progress_.step(what); });
+  };
   try {
+    begin("values of the final designs");
     contents_.final = final_record(study_, contents_);
     try {
       write(StudyState::running);
     } catch (const StorageError&) {  // ignored, because the file is written again at the end of the run
     }
-    std::optional<SlowStepNotice> slow;
-    complete_final_record(study_, contents_, [&](const std::string& what) {
-      slow.reset();
-      slow.emplace([this, what] { progress_.step(what); });
-    });
+    complete_final_record(study_, contents_, begin);
   } catch (const Stopped&) {  // a resumed run continues with the steps that are missing
     goes_on();
   }

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "engine/config/mechanism_file.hpp"
+#include "engine/core/team.hpp"
 #include "engine/problem/diagnosis.hpp"
 #include "engine/report/json_text.hpp"
 #include "engine/runner/final_record.hpp"
@@ -12,7 +13,7 @@
 #include "experiments/app/axes.hpp"
 #include "experiments/app/catalogue.hpp"
 #include "experiments/app/next_step.hpp"
-#include "experiments/app/running.hpp"
+#include "experiments/app/run.hpp"
 #include "experiments/app/summary.hpp"
 #include "experiments/app/target.hpp"
 
@@ -174,7 +175,13 @@ void check_study(const Study& study, const CheckArguments& arguments, Session& s
   std::cout << probe_text(sampled);
   std::vector<std::string> words = {"run", arguments.file};
   for (const std::string& word : arguments.changes.arguments()) words.push_back(word);
-  if (conflicts.empty()) std::cout << '\n' << next_step(session, words);
+  if (!conflicts.empty()) return;
+  std::cout << '\n';
+  if (!study.stages.empty()) {
+    print_estimate(study, measured_cost(study, session), 1, team_size(0));
+    std::cout << '\n';
+  }
+  std::cout << next_step(session, words);
 }
 
 void check(const CheckArguments& arguments, Session& session) {

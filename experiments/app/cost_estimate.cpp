@@ -36,11 +36,10 @@ void print_estimate(const Study& study, const RunCost& cost, int seeds, int thre
   if (seeds > 1) std::cout << ", for each of " << seeds << " seeds";
   std::cout << ", together " << (is_lower_bound ? "more than " : "about ") << duration_text(together * seeds) << " on "
             << (ranks > 1 ? std::to_string(ranks) + " ranks x " : "") << threads_of_rank
-            << (threads_of_rank == 1 ? " thread" : " threads")
-            << (cost.exact_limit > 0
-                    ? ", then exact values of the final designs in at most " + duration_text(cost.exact_limit)
-                    : "")
-            << std::endl;  // std::endl flushes the stream, so that the text appears immediately, also in a pipe
+            << (threads_of_rank == 1 ? " thread" : " threads");
+  for (const RunCost::LongStep& step : cost.long_steps)
+    std::cout << ", then " << step.what << " in at most " << duration_text(step.seconds);
+  std::cout << std::endl;  // std::endl flushes the stream, so that the text appears immediately, also in a pipe
 }
 
 }  // namespace pkm

@@ -128,5 +128,15 @@ TEST_F(SlowSteps, CheckIsLimitedInTime) {
   EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 60);
 }
 
+TEST_F(SlowSteps, TheEstimateIncludesDesignsThatDoNotFailAndCertificates) {
+  // The centre of the bounds fails at once; the largest cylinder of other designs takes milliseconds, its certificate
+  // seconds.
+  ASSERT_EQ(run({"check", PKM_EXPERIMENTS "/mechanisms/quantities/rotary-delta-cylinder.toml"}), 0) << output_;
+  EXPECT_THAT(output_, ::testing::ContainsRegex(
+                           "at most 180 evaluations of (about|more than) [0-9.]+ m?s and 100 with derivatives"));
+  EXPECT_THAT(output_,
+              ::testing::ContainsRegex(", then certificates of the final designs in at most [0-9.]+ (s|min)\n"));
+}
+
 }  // namespace
 }  // namespace pkm::testing

@@ -21,7 +21,8 @@ const std::string kSearch = "[[stage]]\noptimiser = \"ga\"\npopulation = 10\ngen
 const std::string kSolver = "[[stage]]\noptimiser = \"nlopt\"\nstart = \"none\"\nevaluations = 100\nmultistart = 3\n";
 
 TEST(RemainingTime, IncludesLaterStagesAndFinalSteps) {
-  const RunCost cost{.plain = 0.01, .with_derivatives = 0.1, .final_steps = 2, .exact_limit = 5};
+  const RunCost cost{
+      .plain = 0.01, .with_derivatives = 0.1, .final_steps = 2, .long_steps = {{"a step", 4}, {"another", 1}}};
   const Study s = study_of_text(kSearch + kSolver);
   const std::int64_t limit = s.stages[1].optimiser->evaluation_limit(*s.problem);
   RemainingTime remaining(s, cost, 1);
