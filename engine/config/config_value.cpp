@@ -340,7 +340,8 @@ std::optional<ConfigValue> ConfigValue::find(const std::string& key) const {
     if (const TomlValue* const within = value_->find(key.substr(0, dot))) found = within->find(key.substr(dot + 1));
   Spec spec = spec_of(key);
   if (!found) return std::nullopt;
-  return child(*found, path_.empty() ? key : path_ + "." + key, std::move(spec));
+  const std::string& name = found->key_in_file.empty() ? key : found->key_in_file;
+  return child(*found, path_.empty() ? name : path_ + "." + name, std::move(spec));
 }
 
 std::optional<double> ConfigValue::find_number(const std::string& key, std::string_view unit, double lower,

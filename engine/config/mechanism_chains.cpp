@@ -70,6 +70,13 @@ TomlValue text_value(const std::string& text, int line) {
   return value;
 }
 
+/// The element `index` of the list under `key` of a chain, for another key of the limb that replaces the chain.
+TomlValue moved(const ConfigValue& element, const char* key, std::size_t index) {
+  TomlValue value = element.toml();
+  value.key_in_file = std::string(key) + "[" + std::to_string(index + 1) + "]";
+  return value;
+}
+
 /// The elements of a list, whose number has to be `count`. @param what  what the elements are, for messages
 std::vector<ConfigValue> elements_of(const ConfigValue& table, const char* key, std::size_t count,
                                      const std::string& what) {
@@ -215,8 +222,9 @@ ConfigValue rewritten(const Chain& chain, MechanismDraft& draft) {
                             " have to be parallel for a closed form; expected the direction of the axis before");
     if (key == "across" && i > 0 && std::fabs(draft.scope.at_default(dot(directions[i], directions[0]))) > 1e-9)
       throw axes[i].refusal("the axis of the revolute joint has to be normal to the slide, axes[1]");
-    if (key != "=") set_key(kept, key, axes[i].toml());
-    if (key == "axis" && count > 1 && form.axes[1] == std::string("=")) set_key(kept, "across", axes[i].toml());
+    if (key != "=") set_key(kept, key, moved(axes[i], "axes", i));
+    if (key == "axis" && count > 1 && form.axes[1] == std::string("="))
+      set_key(kept, "across", moved(axes[i], "axes", i));
   }
   const std::vector<ConfigValue> links =
       elements_of(table, "links", form.links.size(),
@@ -225,7 +233,7 @@ ConfigValue rewritten(const Chain& chain, MechanismDraft& draft) {
                                            : "two lengths [l_1, l_2]");
   for (std::size_t i = 0; i < links.size(); ++i) {
     const std::string key = form.links[i];
-    set_key(kept, key, (key == "links" ? *table.find(key) : links[i]).toml());
+    set_key(kept, key, key == "links" ? table.find(key)->toml() : moved(links[i], "links", i));
   }
   if (!is_usual)
     for (const char* const key : {"play", "rod_section", "crank_section", "slider_section", "leg_section"})

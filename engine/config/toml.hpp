@@ -24,6 +24,9 @@ struct TomlValue {
   std::vector<TomlValue> items;    ///< tables: one value per key; arrays: the elements
   int line = 0;                    ///< 1-based line where the value begins
   std::string written;             ///< the value as it stands in the file, for messages: "\"200 kg\"", "a table"
+  /// For a value that set_key() has stored under another key than in the file: its key in the file, such as "links[2]",
+  /// for messages; otherwise "".
+  std::string key_in_file;
 
   /// A table's value under `key`, or null.
   const TomlValue* find(const std::string& key) const;

@@ -484,6 +484,10 @@ TEST(Chains, AreRefusedWithReasons) {
   EXPECT_THAT(with("axes[^\n]*\n", ""), HasSubstr("limb[1].axes: found nothing; expected the directions of 3 axes"));
   EXPECT_THAT(with("links[^\n]*", "links = [0.2]"),
               HasSubstr("limb[1].links: found [0.2]; expected two lengths [l_1, l_2]"));
+  EXPECT_THAT(with("links[^\n]*", "links = [0.2, \"50 deg\"]"),
+              HasSubstr("limb[1].links[2]: found \"50 deg\", an angle; expected a length"));
+  EXPECT_THAT(with("links[^\n]*", "links = [-0.2, 0.3]"),
+              HasSubstr("limb[1].links[1]: found -0.2; expected a number > 0"));
   EXPECT_THAT(with("zero = [^\n]*", "zero = [0, 0, 1]"), HasSubstr("zero"));
   EXPECT_THAT(refusal_of(planar(kRRR + "driven = 5\n")),
               HasSubstr("limb[1].driven: found 5; expected an integer in [1, 4]"));
