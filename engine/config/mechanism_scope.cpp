@@ -37,7 +37,8 @@ void MechanismScope::add_deferred(const ConfigValue& at, const std::string& name
 
 void MechanismScope::add_predefined(const std::string& name, std::function<Value()> value) {
   if (names_.find(name)) return;
-  names_.add(name, expression::Names::Listing::never);
+  using Listing = expression::Names::Listing;
+  names_.add(name, name.find('.') == std::string::npos ? Listing::always : Listing::never);
   origins_.emplace_back();
   values_.push_back(model_.term(model_.graph.number(0)));
   deferred_[values_.size() - 1] = {name, std::move(value)};

@@ -138,15 +138,25 @@ class Lexer {
     return {.text = word, .position = i, .name = index};
   }
 
-  /// Reports an unknown name and lists the known names: those with dots if the unknown name has one, otherwise those
-  /// without dots.
+  /// Reports an unknown name and lists the known names. For a name with a dot, "arm1.D", these are the names of the
+  /// same object or, if there are none, all names with a dot.
   [[noreturn]] void refuse_unknown(const std::string& word, std::size_t i) const {
-    const auto has_dot = [](const std::string& name) { return name.find('.') != std::string::npos; };
-    std::vector<std::string> names;
-    for (const std::string& name : names_.listed())
-      if (has_dot(name) == has_dot(word)) names.push_back(name);
-    if (!has_dot(word) || names.empty()) names.emplace_back(kPiName);
-    refuse(text_, "has the unknown name " + quote(word, i) + expected_names(word, names));
+    const std::string message = "has the unknown name " + quote(word, i), object = word.substr(0, word.find('.'));
+    const bool has_dot = object.size() < word.size();
+    std::vector<std::string> plain, dotted, of_object;
+    for (const std::string& name : names_.listed()) {
+      (name.find('.') == std::string::npos ? plain : dotted).push_back(name);
+      if (has_dot && name.starts_with(object + ".")) of_object.push_back(name);
+    }
+    plain.emplace_back(kPiName);
+    if (!of_object.empty()) refuse(text_, message + expected_names(word, of_object));
+    if (has_dot && names_.find(object)) {
+      const std::vector<std::string> parts = {"x", "y", "z", "origin", "R"};
+      refuse(text_, message + "; the parts of a vector are x, y and z, those of a frame origin and R" +
+                        did_you_mean(word.substr(object.size() + 1), parts));
+    }
+    if (has_dot && !dotted.empty()) refuse(text_, message + expected_names(word, dotted));
+    refuse(text_, message + expected_names(object, plain));
   }
 
   void close(std::size_t i) {

@@ -206,6 +206,16 @@ TEST(MechanismVectors, OfWrongKindsAreRefused) {
   EXPECT_THAT(
       refusal_of_file(crank("[[link]]\nname = \"m\"\nfrom = \"arm1.D\"\nto = [0, 0, 0]\nradius = 0\n")),
       HasSubstr("has the unknown name 'arm1.D' at character 1; expected one of arm1.A, arm1.B, arm1.C, arm1.S"));
+  // In [let] no point of a limb is known yet.
+  const auto refused_let = [](const std::string& value) {
+    return refusal_of_file(crank("", "", "v = \"" + value + "\"\n"));
+  };
+  EXPECT_THAT(refused_let("arm1.C"),
+              HasSubstr("has the unknown name 'arm1.C' at character 1; expected one of R, l, x, y, phi, platform, pi"));
+  EXPECT_THAT(refused_let("platfrm.origin"), HasSubstr(", platform, pi; did you mean 'platform'?"));
+  EXPECT_THAT(refused_let("platform.orign"),
+              HasSubstr("has the unknown name 'platform.orign' at character 1; the parts of a vector are x, y and z, "
+                        "those of a frame origin and R; did you mean 'origin'?"));
   EXPECT_THAT(refusal_of_file(crank("[[margin]]\nname = \"m\"\nformula = \"arm1.B + l\"\n")),
               HasSubstr("has a '+' at character 8 between a vector and a scalar"));
   EXPECT_THAT(refusal_of_file(crank("", "", "v = \"[x, y, 0]\"\n[[design]]\nname = \"d\"\nformula = \"v.x\"\n")),
