@@ -76,7 +76,9 @@ class MinimumAlong final : public Quantity {
 ConstraintEntry motion_constraint() {
   return {
       .name = kMotionConstraint,
-      .meaning = "every pose along a motion satisfies the limits of poses: minimum of all margins, in their units",
+      .meaning =
+          "every pose along a motion satisfies the limits of poses: minimum of all margins, each in its own unit (m, "
+          "rad or 1)",
       .options =
           [](const MechanismInfo&) {
             return std::vector<OptionSpec>{motion_option(), samples_option(), mode_option(), sharpness_of_minimum()};
@@ -86,7 +88,8 @@ ConstraintEntry motion_constraint() {
       .detail =
           [](const EntryContext& context) {
             return "minimum margin of a pose along the motion " + context.options.word("motion") + ", over " +
-                   std::to_string(context.options.integer("samples")) + " samples";
+                   std::to_string(context.options.integer("samples")) + " samples" +
+                   (unit_of_minimum(context) == "1" ? ", in the unit of its limit: m, rad or 1" : "");
           },
   };
 }

@@ -38,7 +38,8 @@ std::unique_ptr<const Quantity> make_task_workspace(const EntryContext& context)
 ConstraintEntry task_workspace() {
   return {
       .name = "task-workspace",
-      .meaning = "the box of a region is feasible: minimum of all margins of its poses, in their units",
+      .meaning =
+          "the box of a region is feasible: minimum of all margins of its poses, each in its own unit (m, rad or 1)",
       .options =
           [](const MechanismInfo&) {
             return std::vector<OptionSpec>{
