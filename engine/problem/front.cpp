@@ -88,6 +88,9 @@ std::vector<std::size_t> knees(const Scores& front) {
   constexpr double kRadius = 0.2;  // radius of the neighbourhood of a design, in normalised scores
   constexpr double kMinGain =
       0.01;  // minimum cost advantage over the extreme points; excludes their neighbours and rounding effects
+  // With fewer designs, most of them have no other design within kRadius.
+  constexpr std::size_t kMinDesigns = 10;
+  if (front.size() < kMinDesigns) return {};
   const Scores scaled = normalised(front);
   const Ranges extent = ranges_of(front);
   const std::vector<double> cost = sums(scaled);

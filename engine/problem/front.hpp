@@ -62,7 +62,7 @@ std::size_t compromise(const Scores& front);
 /// Knees of the front, by increasing cost; the cost of a design is the sum of its normalised scores. A knee has the
 /// lowest cost within a distance of 0.2 (maximum norm of the normalised scores), and at least 0.01 less than every
 /// extreme point. Moving away from a knee, the scores that get worse lose more than the others gain. A concave front
-/// has no knees.
+/// has no knees, and neither has a front of fewer than 10 designs: its designs have too few neighbours.
 std::vector<std::size_t> knees(const Scores& front);
 
 /// Representative subset of `count` designs by farthest-point sampling: starts with the compromise and the extreme

@@ -60,6 +60,17 @@ TEST(Front, KneesAreConvexBendsAndNotExtremePoints) {
   EXPECT_TRUE(knees(line({0, 0.5, 1})).empty());  // a straight front has no knees
 }
 
+TEST(Front, AFrontOfFewDesignsHasNoKnees) {
+  for (const std::size_t designs : {9U, 10U}) {
+    Scores scores{2};
+    for (std::size_t i = 0; i < designs; ++i) {
+      const double t = static_cast<double>(i) / static_cast<double>(designs - 1);
+      scores.add(std::array{t, std::pow(1 - t, 3)});
+    }
+    EXPECT_EQ(knees(scores).empty(), designs < 10) << designs;
+  }
+}
+
 TEST(Front, ADesignNextToAnExtremePointIsNoKnee) {
   // A concave front, except for one design whose cost is slightly lower than that of the neighbouring extreme point.
   Scores scores{2};
