@@ -12,9 +12,13 @@ namespace pkm {
 /// the order of the runs.
 std::vector<std::size_t> order_by_result(const ProblemRecord& problem, const StageRecord& stage);
 
-/// Number of the local optimum that each multistart run reached, 1 for the best; 0 if the run did not converge to a
-/// feasible first-order optimum, or if there are several objectives. Final designs that are equal in every variable to
-/// 1/1000 of its range are the same optimum.
+/// Upper limit of the KKT residual (engine/optimisers/solvers/optimality.hpp) of a design that counts as an optimum.
+inline constexpr double kMaxResidualOfOptimum = 1e-4;
+
+/// Number of the local optimum that each start reached, 1 for the best; 0 if the start did not converge to a feasible
+/// first-order optimum, or if there are several objectives. Final designs are the same optimum if they are equal in
+/// every variable to 1/1000 of its range, or if they have the same objective and differ only in variables that have no
+/// influence on the objective at the best design.
 std::vector<std::size_t> number_optima(const ProblemRecord& problem, const StageRecord& stage);
 
 }  // namespace pkm
