@@ -239,8 +239,12 @@ void add_active_periods(const MovesOfMotion::Move& move, const FastestMove& fast
   const std::vector<double> times = times_of_nodes(profile);
   const std::size_t first = active.size();
   for (std::size_t i = 0; i < profile.accelerations.size(); ++i) {
-    const Violation here = largest_violation(fastest.points[i], profile.squares[i], profile.accelerations[i],
-                                             design.limits, design.mechanism.drive_trains());
+    const auto violation_at = [&](std::size_t node) {
+      return largest_violation(fastest.points[node], profile.squares[node], profile.accelerations[i], design.limits,
+                               design.mechanism.drive_trains());
+    };
+    Violation here = violation_at(i);
+    if (const Violation at_end = violation_at(i + 1); at_end.value > here.value) here = at_end;
     if (here.value < -kActive) continue;
     const double begin = period.begin + times[i] / root, end = period.begin + times[i + 1] / root;
     if (active.size() == first || !(active.back().limit == here.limit) || active.back().end < begin)

@@ -1,6 +1,7 @@
 #include "experiments/app/fastest.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/config/assignments.hpp"
 #include "engine/core/catalogue.hpp"
@@ -55,6 +56,33 @@ std::vector<LimitShare> shares_of(const std::vector<ActivePeriod>& active) {
     found->last = period.end;
   }
   return shares;
+}
+
+/// Adds a table of the active limits with the shares of the time, which add up to 100 %, or only with the instants if
+/// every limit is active at a single instant of a move.
+void report_shares(const MechanismInfo& info, const FastestMotion& found, Printout& out) {
+  constexpr double kNegligible = 1e-6;  // smaller shares are not listed
+  const std::vector<LimitShare> shares = shares_of(found.active);
+  if (std::ranges::all_of(shares, [](const LimitShare& share) { return share.time == 0; })) {
+    std::vector<Row> rows = {{"", "first at", "last at"}};
+    for (const LimitShare& share : shares)
+      rows.push_back({name_of_limit(info, share.limit), number(share.first, "s"), number(share.last, "s")});
+    return out.add_table("limits that bound the motion, each at one instant of a move", rows);
+  }
+  std::vector<Row> rows = {{"", "share of the time", "first from", "last until"}};
+  const auto percentage = [&](double time) { return digits(100 * time / found.duration) + " %"; };
+  double rest = found.duration, pauses = found.duration;
+  for (const MovePeriod& move : found.moves) pauses -= move.end - move.begin;
+  for (const LimitShare& share : shares) {
+    rows.push_back(
+        {name_of_limit(info, share.limit), percentage(share.time), number(share.first, "s"), number(share.last, "s")});
+    rest -= share.time;
+  }
+  // A continuous torque is a limit of the whole motion, with its pauses.
+  pauses = std::fmin(pauses, rest);
+  for (const auto& [name, time] : {std::pair("no limit is fully used", rest - pauses), {"pause", pauses}})
+    if (time > kNegligible * found.duration) rows.push_back({name, percentage(time)});
+  out.add_table("limits that bound the motion", rows);
 }
 
 }  // namespace
@@ -145,11 +173,7 @@ void report_fastest(const MechanismInfo& info, const FastestMotion& found, const
   const bool own = arguments.law == "own";
   out.head.push_back(
       {"law", own ? "that of the motion" : "time-optimal along the path", own ? "" : error_text(found.error)});
-  std::vector<Row> rows = {{"", "share of the time", "first from", "last until"}};
-  for (const LimitShare& share : shares_of(found.active))
-    rows.push_back({name_of_limit(info, share.limit), digits(100 * share.time / found.duration) + " %",
-                    number(share.first, "s"), number(share.last, "s")});
-  out.add_table("limits that bound the motion", rows);
+  report_shares(info, found, out);
   out.json["fastest"] = {{"law", arguments.law}, {"discretisation_error", found.error}};
   out.json["fastest"]["moves"] = list_json(found.moves, [](const MovePeriod& move) {
     return Json{{"begin", move.begin}, {"end", move.end}};

@@ -1,5 +1,6 @@
 // `pkmopt trajectory`, `pkmopt simulate`, and studies whose objectives follow a motion.
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -184,6 +185,31 @@ TEST(CliTrajectory, FastestMotionAcceptsLimitsOfTheCommandLine) {
   EXPECT_LT(by_more_nodes["fastest"]["discretisation_error"], by_nodes["fastest"]["discretisation_error"]);
   const auto slow = pkmopt({"trajectory", delta, "--motion", "m.toml", "--tool-speed", "1"}, folder.path());
   EXPECT_THAT(slow.err, HasSubstr("--tool-speed: this option needs --fastest"));
+}
+
+TEST(CliTrajectory, TheSharesOfTheLimitsOfAFastestMotionAddUp) {
+  const StudyFolder folder;
+  folder.write("m.toml",
+               "type = \"pick-and-place\"\nx = -0.15\ny = 0\nz = -0.5\nlift = 0.05\nreach = 0.3\n"
+               "lift_time = 0.2\nreach_time = 0.4\n");
+  const auto table = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command = {"trajectory", PKM_EXPERIMENTS "/mechanisms/rotary-delta.toml", "--motion",
+                                        "m.toml", "--fastest"};
+    command.insert(command.end(), more.begin(), more.end());
+    const std::string text = pkmopt(command, folder.path()).out;
+    const auto begin = text.find("limits that bound the motion");
+    return text.substr(begin, text.find("\n\n", begin) - begin);
+  };
+  const std::string optimal = table({"--peak-acceleration", "all=300", "--tool-speed", "2m/s"});
+  double sum = 0;
+  const std::regex share("([0-9.e+-]+) %");
+  for (std::sregex_iterator at(optimal.begin(), optimal.end(), share); at != std::sregex_iterator(); ++at)
+    sum += std::stod((*at)[1]);
+  EXPECT_NEAR(sum, 100, 0.02) << optimal;
+  EXPECT_THAT(optimal, HasSubstr("  tool speed"));
+  const std::string own = table({"--peak-acceleration", "all=300", "--law", "own"});
+  EXPECT_THAT(own, ::testing::StartsWith("limits that bound the motion, each at one instant of a move\n"));
+  EXPECT_EQ(own.find('%'), std::string::npos) << own;
 }
 
 TEST(CliTrajectory, ReadsTheTableThatItWrites) {
