@@ -72,7 +72,7 @@ std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) 
   std::vector<Row> rows = {{"  start", "evaluations"}};
   for (const ObjectiveInfo& o : problem.objectives) rows[0].push_back(o.name);
   if (one) rows[0].insert(rows[0].end(), {"to", "optimum"});
-  rows[0].insert(rows[0].end(), {"optimality", "ended"});
+  rows[0].insert(rows[0].end(), {"KKT residual", "ended"});
   for (std::size_t k = 0; k < std::min(order.size(), max_rows); ++k) {
     const StartOutcome& start = stage.starts[order[k]];
     const bool feasible = stage.table.status[static_cast<std::size_t>(start.end_row)] == Status::feasible;
@@ -84,7 +84,11 @@ std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) 
                   (one || feasible ? "" : ", infeasible"));
   }
   const std::string more = "  and " + std::to_string(order.size() - rows.size() + 1) + " more";
-  return aligned(rows) + (order.size() <= max_rows ? "" : more + (one ? ", none better\n" : "\n"));
+  const bool is_known = std::ranges::any_of(stage.starts, [](const auto& s) { return std::isfinite(s.optimality); });
+  return aligned(rows) + (order.size() <= max_rows ? "" : more + (one ? ", none better\n" : "\n")) +
+         (is_known ? "    KKT residual: relative improvement per full range of a variable, to first order; below " +
+                         shortest(kMaxResidualOfOptimum) + " at an optimum\n"
+                   : "");
 }
 
 std::string optimality_text(const ProblemRecord& problem, const StageRecord& stage) {
@@ -92,14 +96,15 @@ std::string optimality_text(const ProblemRecord& problem, const StageRecord& sta
   const OptimalityRecord& record = *stage.optimality;
   const ObjectiveInfo& objective = problem.objectives[0];
   const std::string of = objective.name + (objective.unit == "1" ? "" : " [" + objective.unit + "]");
-  std::string text = "first-order optimality " + formatted("%.1e", record.optimality) + '\n';
+  std::string text = "first-order optimality (KKT residual) " + formatted("%.1e", record.optimality) + "; below " +
+                     shortest(kMaxResidualOfOptimum) + " at an optimum\n";
   if (!record.active.empty()) {
     std::vector<Row> rows = {{"", "", "per unit", "multiplier"}};
     for (const ActiveRecord& a : sorted_within_units(record.active, [](const ActiveRecord& a) { return a.multiplier; }))
       rows.push_back({a.name, a.kind, display_unit(a.unit).name, digits(a.multiplier * display_unit(a.unit).size)});
     text += format_titled_table("active constraints, and the gain of " + of + " if they are relaxed", rows);
   }
-  std::vector<Row> rows = {{"", "", "per unit", "as built", "reoptimised"}};
+  std::vector<Row> rows = {{"", "", "per unit", "others fixed", "reoptimised"}};
   for (const SensitivityRecord& s : sorted_within_units(without_residuals(record.sensitivities), influence)) {
     const bool varies = std::isnan(s.reoptimised);
     const auto text_of = [size = display_unit(s.unit).size](double value) {

@@ -116,7 +116,7 @@ def front(study, xlabel, ylabel):
 
 def sensitivity(run):
     run.study("experiments/4ppa-2par/rails.toml", "rails.h5")
-    text = run("show rails.h5").split("as built   reoptimised\n")[1].split("\n\n")[0]
+    text = re.split(r"others fixed +reoptimised\n", run("show rails.h5"))[1].split("\n\n")[0]
     rows = [line.split() for line in text.splitlines()]  # name, varies or fixed, mm, derivative
     bars([row[0] for row in rows], [float(row[3]) for row in rows], "change of the workspace [m$^2$ rad per mm]",
          signs=True)

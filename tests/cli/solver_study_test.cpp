@@ -119,9 +119,9 @@ TEST_F(SolverProgram, ShowsStartsOptimalityAndSensitivities) {
   write_toml(kSlsqp, "");
   ASSERT_EQ(run({"run", "study.toml", "--output", "s.h5"}), 0) << output_;
   for (const char* part :
-       {"stage 1: nlopt, 3 starts, ", "Sobol point 1", "converged (", "first-order optimality ",
-        "workspace-shape  constraint ", "lower bound ",
-        "sensitivity of workspace-ratio [rad], largest first within each unit", "as built", "reoptimised"})
+       {"stage 1: nlopt, 3 starts, ", "Sobol point 1", "converged (", "KKT residual: relative improvement ",
+        "first-order optimality (KKT residual) ", "workspace-shape  constraint ", "lower bound ",
+        "sensitivity of workspace-ratio [rad], largest first within each unit", "others fixed", "reoptimised"})
     EXPECT_THAT(output_, HasSubstr(part));
   ASSERT_EQ(run({"show", "s.h5", "--json"}), 0);
   const auto printed = nlohmann::json::parse(output_);

@@ -242,7 +242,7 @@ function optimalityBox(study) {
     const rate = (value) => rateText(Math.abs(value) < 1e-6 * size ? 0 : value, objective, unit);
     box.append(
       simpleTable(
-        ["parameter", "as built", "reoptimised"],
+        ["parameter", "others fixed", "reoptimised"],
         group
           .sort((a, b) => Math.abs(b.as_built) - Math.abs(a.as_built))
           .map((s) => [s.name, rate(s.as_built), s.reoptimised === null ? "varies" : rate(s.reoptimised)]),
