@@ -3,8 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/core/catalogue.hpp"
 #include "engine/generic/clearance.hpp"
 #include "engine/generic/kinematics.hpp"
+#include "engine/generic/mechanism.hpp"
 #include "engine/generic/report_limits.hpp"
 
 namespace pkm::generic {
@@ -16,6 +18,17 @@ struct MarginScratch {
 };
 
 }  // namespace
+
+std::string unit_of_margin(const Mechanism& mechanism, const std::string& name) {
+  if (const Evaluation* const e = evaluation_of(mechanism)) {
+    const ReportedMargin* const group = find_named(e->model.reported_margins, name);
+    if (group && !group->shown) return e->model.margins[group->first].unit;
+    for (const auto* const margins : {&e->model.domains, &e->model.margins})
+      if (const Result* const margin = find_named(*margins, name); margin && !group) return margin->unit;
+  }
+  const LimitInfo* const limit = find_named(mechanism.info().limits, name);
+  return limit ? limit->unit : "";
+}
 
 template <class S>
 void append_margins(const Evaluation& e, std::span<const S> parameters, std::size_t mode, const LimitSpec& limits,

@@ -23,4 +23,8 @@ void append_ordered_margins(const Evaluation& evaluation, std::span<const S> par
                             const LimitSpec& limits, std::span<const Pose<S>> poses, Scratch& scratch,
                             std::vector<S>& margins);
 
+/// SI unit of a margin of PoseReport::margins; "" if it is unknown, because the margin is the argument of a square root
+/// or of a similar operation, or because the mechanism is not from a file.
+std::string unit_of_margin(const Mechanism& mechanism, const std::string& name);
+
 }  // namespace pkm::generic

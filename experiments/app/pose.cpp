@@ -6,8 +6,10 @@
 #include <limits>
 
 #include "engine/core/catalogue.hpp"
+#include "engine/generic/pose_margins.hpp"
 #include "engine/math/satisfied.hpp"
 #include "engine/mechanism/availability.hpp"
+#include "engine/workspace/pose_quantities.hpp"
 #include "experiments/app/axes.hpp"
 #include "experiments/app/link_files.hpp"
 #include "experiments/app/motion_inputs.hpp"
@@ -207,16 +209,16 @@ std::string pose(const Target& target, const PoseArguments& arguments, const std
   if (report.assembles) print_jacobians(report, J_twist, out);
 
   std::vector<Row> indices, margins;
-  const auto add_index = [&indices](const std::string& name, std::optional<double> value) {
-    if (value) indices.push_back({name, number(*value)});
+  const auto add_index = [&indices](const std::string& name, std::optional<double> value, const std::string& meaning) {
+    if (value) indices.push_back({name, number(*value), meaning});
   };
-  add_index("det_Jq", report.det_Jq);
-  add_index("det_G", report.det_G);
+  add_index("det_Jq", report.det_Jq, "determinant of Jq, 0 at serial singularities");
+  add_index("det_G", report.det_G, "determinant of G, 0 at parallel singularities");
   for (const auto& [name, value] : report.indices) {
     const QuantityInfo* const quantity = find_named(info.quantities, name);
-    indices.push_back({name, number(value, quantity ? quantity->unit : "1")});
+    indices.push_back({name, number(value, quantity ? quantity->unit : "1"), quantity ? quantity->meaning : ""});
   }
-  add_index("conditioning", report.conditioning);
+  add_index("conditioning", report.conditioning, kConditioning.meaning);
   std::string undefined = why_no_conditioning(info).value_or("");
   if (undefined.empty() && report.J && !report.conditioning)
     undefined = "the Jacobian is infinite, or a characteristic length of this design is not positive";
@@ -236,9 +238,12 @@ std::string pose(const Target& target, const PoseArguments& arguments, const std
   out.add_table("angles and lengths", angles);
   report_quantities(info, at, mechanism.quantities(target.parameters, mode, target.limits, at), out);
   for (const auto& [name, value] : report.margins)
-    margins.push_back({name, number(value), std::isnan(value) ? "" : is_satisfied(value) ? "satisfied" : "violated"});
+    margins.push_back({name, number(value, generic::unit_of_margin(mechanism, name)),
+                       std::isnan(value)     ? ""
+                       : is_satisfied(value) ? "satisfied"
+                                             : "violated"});
   json["margins"] = values_by_name(report.margins);
-  out.add_table("margins in SI units (satisfied if >= 0)", margins);
+  out.add_table("margins (satisfied if >= 0)", margins);
   write_links(target, mode, at.pose, arguments, out);
   return assembly_error(mode, report);
 }

@@ -58,7 +58,7 @@ std::string without_colours(const std::string& text) {
 
 TEST(CliTerminal, HeadingsAndResultsAreColoured) {
   const std::string text = on_terminal(kColouredCommand);
-  EXPECT_THAT(text, HasSubstr("\n\x1b[1mmargins in SI units (satisfied if >= 0)\x1b[0m\n"));
+  EXPECT_THAT(text, HasSubstr("\n\x1b[1mmargins (satisfied if >= 0)\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("  \x1b[32msatisfied\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("  \x1b[31mviolated\x1b[0m\n"));
   EXPECT_THAT(text, HasSubstr("\x1b[31mno: beta_max is violated\x1b[0m\n"));
