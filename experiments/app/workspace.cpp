@@ -256,7 +256,7 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, co
   if (workspace.touches_box)
     out.head.push_back({"warning", "the feasible set touches the box; it may extend beyond it"});
 
-  rows.clear();
+  rows = {{"", "minimum", "maximum", ""}};
   const Unsupported undefined = why_no_conditioning(target.info());
   json["field_cells"] = of_fields.cells();
   for (const WorkspaceField& field : of_fields.fields) {
@@ -274,9 +274,13 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, co
     if (range && field.name != "feasible")
       rows.push_back({field.name, number(range->least, unit), number(range->greatest, unit), field.meaning});
   }
-  const bool is_coarse = of_fields.cells() != workspace.cells();
-  out.add_table(
-      "fields (minimum and maximum" + (is_coarse ? " at " + std::to_string(of_fields.cells()) + " cells)" : ")"), rows);
+  std::string title = "fields over the feasible cells (the margin over all cells)";
+  if (of_fields.cells() != workspace.cells()) {
+    std::vector<std::string> cells;
+    for (const WorkspaceAxis& axis : of_fields.axes) cells.push_back(std::to_string(axis.cells));
+    title += " of a coarser grid of " + join(cells, " x ") + " cells, to save time";
+  }
+  if (rows.size() > 1) out.add_table(title, rows);
 }
 
 std::string workspace(const Target& target, const WorkspaceArguments& arguments, Printout& out) {
