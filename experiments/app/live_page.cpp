@@ -35,7 +35,7 @@ section { background: var(--box); border: 1px solid var(--line); border-radius: 
 .state { font-size: 13px; font-weight: 600; padding: 1px 9px; border: 1px solid currentColor; border-radius: 10px; }
 .finished { color: var(--better); }
 .running { color: var(--accent); }
-.interrupted { color: var(--worse); }
+.interrupted, .failed { color: var(--worse); }
 .muted { color: var(--muted); }
 .bar { height: 12px; border-radius: 6px; background: var(--line); overflow: hidden; margin: 8px 0; }
 .bar i { display: block; height: 100%; background: var(--accent); }
@@ -228,6 +228,9 @@ std::string closing_sentence(const LivePageState& state) {
            " seconds. If the time of this state is old, an evaluation takes long, or the process was killed: "
            "<code>pkmopt resume " +
            file + " --live</code> continues the study from its last checkpoint.";
+  if (!state.failure.empty())
+    return "The run ended with an error: " + xml_text(state.failure) + ". <code>pkmopt resume " + file +
+           " --live</code> continues the study from its last checkpoint, if there is one.";
   if (state.state == StudyState::interrupted)
     return "The run was stopped" + (state.stopped.empty() ? "" : " by " + xml_text(state.stopped)) +
            ". <code>pkmopt resume " + file + " --live</code> continues it.";
@@ -238,7 +241,7 @@ std::string closing_sentence(const LivePageState& state) {
 }  // namespace
 
 std::string live_page_text(const StudyContents& contents, const LivePageState& state) {
-  const std::string name = xml_text(contents.name), word = words(state.state);
+  const std::string name = xml_text(contents.name), word = state.failure.empty() ? words(state.state) : "failed";
   std::string page =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -290,6 +293,15 @@ void LivePage::finish(const StudyContents& contents, const std::string& stopped,
   state_.stopped = stopped;
   state_.report = report.empty() ? "" : std::filesystem::path(report).filename().string();
   write(contents);
+}
+
+void LivePage::fail(const StudyContents& contents, const std::string& error) {
+  state_.state = StudyState::interrupted;
+  state_.failure = error;
+  try {
+    write(contents);
+  } catch (const StorageError&) {
+  }
 }
 
 std::string live_page_file(const std::string& study_file) {

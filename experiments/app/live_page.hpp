@@ -19,6 +19,7 @@ struct LivePageState {
   StudyState state = StudyState::running;
   std::string stopped;  ///< reason why the run was interrupted, such as "SIGINT"; "" otherwise
   std::string report;   ///< name of the report's file, to which a finished page links; "": there is none
+  std::string failure;  ///< error that ended the run; "": none
 };
 std::string live_page_text(const StudyContents& contents, const LivePageState& state);
 
@@ -36,6 +37,10 @@ class LivePage {
   void update(const StudyContents& contents, const ProgressReport& progress);
   /// Writes the final state. @param report  path of the report in the folder of the page; "": none
   void finish(const StudyContents& contents, const std::string& stopped, const std::string& report);
+  /// Writes the final state of a run that has ended with an error. A failure to write it is ignored, because the error
+  /// itself is reported.
+  /// @param contents  the study at its last checkpoint
+  void fail(const StudyContents& contents, const std::string& error);
 
  private:
   void write(const StudyContents& contents);

@@ -10,6 +10,7 @@
 #include "engine/core/unit.hpp"
 #include "engine/results/comparison.hpp"
 #include "engine/runner/python_functions.hpp"
+#include "engine/storage/study_file.hpp"
 #include "experiments/app/live_page.hpp"
 #include "experiments/app/next_step.hpp"
 #include "experiments/app/print.hpp"
@@ -77,6 +78,19 @@ std::vector<std::string> live_files(const std::string& file, const RunningArgume
   return {live_page_file(file), report_file_beside(file)};
 }
 
+namespace {
+
+/// The study at its last checkpoint; std::nullopt if there is no readable study file.
+std::optional<StudyContents> last_checkpoint(const std::string& file) {
+  try {
+    return read_study(file);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
 RunOutcome run_with_live_page(const StudyContents& contents, const std::string& file, const RunningArguments& arguments,
                               RunOptions options, const Session& session,
                               const std::function<RunOutcome(const RunOptions&)>& run) {
@@ -86,7 +100,16 @@ RunOutcome run_with_live_page(const StudyContents& contents, const std::string& 
   options.observer = [&page](const StudyContents& so_far, const ProgressReport& report) {
     page.update(so_far, report);
   };
-  RunOutcome outcome = run(options);
+  RunOutcome outcome;
+  try {
+    outcome = run(options);
+  } catch (const UnwrittenOutcome& failure) {
+    page.fail(failure.outcome.contents, failure.what());
+    throw;
+  } catch (const std::exception& error) {
+    page.fail(last_checkpoint(file).value_or(contents), error.what());
+    throw;
+  }
   std::string report;
   if (outcome.stopped.empty()) try {
       report = write_report_beside(file, threads_of(arguments), session);

@@ -57,5 +57,15 @@ TEST_F(LiveProgram, InterruptedAndResumedPageEndsAtTheReport) {
   EXPECT_FALSE(fs::exists(path("study.h5")));
 }
 
+TEST_F(LiveProgram, ThePageOfAFailedRunShowsTheError) {
+  write_toml(5, "");
+  fs::create_directory(path("study.h5.lock"));  // the lock file cannot be created
+  EXPECT_EQ(run({"run", "study.toml", "--live", "--quiet"}), 1);
+  const std::string page = slurp("study.live.html");
+  EXPECT_THAT(page, HasSubstr("<title>failed: "));
+  EXPECT_THAT(page, HasSubstr("The run ended with an error: study.h5: the lock file study.h5.lock cannot be created"));
+  EXPECT_THAT(page, Not(HasSubstr("http-equiv=\"refresh\"")));
+}
+
 }  // namespace
 }  // namespace pkm::testing

@@ -96,6 +96,12 @@ TEST(LivePage, FinalStatesDoNotReload) {
   const std::string stopped = live_page_text(running_study(), state);
   EXPECT_THAT(stopped, Not(HasSubstr("http-equiv=\"refresh\"")));
   EXPECT_THAT(stopped, HasSubstr("The run was stopped by SIGINT. <code>pkmopt resume s.h5 --live</code>"));
+  state.failure = "the disk is full & read-only";
+  const std::string failed = live_page_text(running_study(), state);
+  EXPECT_THAT(failed, Not(HasSubstr("http-equiv=\"refresh\"")));
+  EXPECT_THAT(failed, HasSubstr("<title>failed: a &lt;b&gt; &amp; c</title>"));
+  EXPECT_THAT(failed, HasSubstr("The run ended with an error: the disk is full &amp; read-only. <code>pkmopt resume "
+                                "s.h5 --live</code> continues the study"));
 }
 
 TEST(LivePage, WritingTakesAtMostOneHalfPercentOfTheTime) {
