@@ -33,6 +33,7 @@ pkm_test_packages=(
   chromium                                    # tests of the pages of pkmopt report
   clang-14 libclang-rt-14-dev libomp-14-dev   # second compiler, its sanitizers and OpenMP
   slurm-wlm munge                             # runs started by a cluster's scheduler
+  zsh fish                                    # completion of the command line
 )
 # For the documentation website: C++ interface, copy buttons, formulas, and the structure of study files.
 pkm_docs_packages=(

@@ -19,6 +19,9 @@ struct PossibleValues {
   std::string names = {};  ///< option of `completion` that prints the names; "": none
 };
 
+constexpr const char *kHelpMeaning = "Print the help of the program, or of a command",
+                     *kVersionMeaning = "Print the version and the git revision";
+
 PossibleValues values_of(const std::string& command, const DeclaredOption& option, const Session& session) {
   const std::string& type = option.type;
   if (option.name == "--set") return {{}, "", "--parameters"};
@@ -31,7 +34,7 @@ PossibleValues values_of(const std::string& command, const DeclaredOption& optio
   if (type.starts_with("FILE") && !type.ends_with(".toml")) return {{}, "*"};
   if (type.starts_with("DIR")) return {{}, "*"};
   if (type.starts_with("F.h5")) return {{}, "h5"};
-  if (type.starts_with("MECHANISM|")) {
+  if (type.starts_with("MECHANISM|") || (type == "NAME" && command == "new")) {
     PossibleValues values{{}, "toml"};
     for (const auto& mechanism : session.catalogues.mechanisms) values.words.push_back(mechanism.name());
     return values;
@@ -67,8 +70,7 @@ void print_bash(const std::vector<DeclaredCommand>& commands, const Session& ses
     }
     return line.empty() ? std::string(":") : line;
   };
-  std::vector<std::string> names;
-  for (const DeclaredCommand& command : commands) names.push_back(command.name);
+  const std::string names = join_words(names_of(commands));
   std::cout << "# Completion of " << name << " for bash, printed by '" << name << " completion bash'.\n_" << name
             << R"(_files() {  # files of an extension, and folders
   local pattern='!*'
@@ -92,7 +94,7 @@ _)shell" << name
   COMPREPLY=()
   if ((COMP_CWORD == 1)); then
     COMPREPLY=($(compgen -W )"
-            << in_quotes(join_words(names) + " --help --version") << R"( -- "$word"))
+            << in_quotes(names + " help --help --version") << R"( -- "$word"))
     return
   fi
   case "${COMP_WORDS[1]} $before" in
@@ -118,7 +120,8 @@ _)shell" << name
                                                  : values_of(command.name, command.arguments.front(), session))
               << "\n    fi ;;\n";
   }
-  std::cout << "  esac\n}\ncomplete -F _" << name << ' ' << name << '\n';
+  std::cout << "  help) COMPREPLY=($(compgen -W " << in_quotes(names) << " -- \"$word\")) ;;\n  esac\n}\ncomplete -F _"
+            << name << ' ' << name << '\n';
 }
 
 void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& session) {
@@ -147,8 +150,14 @@ local -a commands=(
 )shell";
   for (const DeclaredCommand& command : commands)
     std::cout << "  " << in_quotes(command.name + ":" + command.meaning) << '\n';
-  std::cout << ")\nif (( CURRENT == 2 )); then _describe command commands; return; fi\nshift words; (( CURRENT-- ))\n"
-               "case $words[1] in\n";
+  std::cout << "  " << in_quotes(std::string("help:") + kHelpMeaning) << "\n)\nlocal -a of_program=("
+            << in_quotes(std::string("--help:") + kHelpMeaning) << ' '
+            << in_quotes(std::string("--version:") + kVersionMeaning) << R"()
+if (( CURRENT == 2 )); then _describe command commands; _describe -o option of_program; return; fi
+shift words; (( CURRENT-- ))
+case $words[1] in
+  help) _describe command commands ;;
+)";
   for (const DeclaredCommand& command : commands) {
     std::cout << "  " << command.name << ") _arguments";
     for (const DeclaredOption& option : command.options)
@@ -159,8 +168,12 @@ local -a commands=(
                                  (option.type.empty()
                                       ? ""
                                       : ":" + zsh_escaped(option.type) + ":" + action(command.name, option)));
-    for (const DeclaredOption& argument : command.arguments)
-      std::cout << " \\\n    " << in_quotes("*:" + zsh_escaped(argument.type) + ":" + action(command.name, argument));
+    for (std::size_t i = 0; i < command.arguments.size(); ++i) {
+      const DeclaredOption& argument = command.arguments[i];
+      const std::string position = i + 1 == command.arguments.size() ? "*" : std::to_string(i + 1);
+      std::cout << " \\\n    "
+                << in_quotes(position + ":" + zsh_escaped(argument.type) + ":" + action(command.name, argument));
+    }
     std::cout << " ;;\n";
   }
   std::cout << "esac\n";
@@ -173,7 +186,7 @@ void print_fish(const std::vector<DeclaredCommand>& commands, const Session& ses
     std::string words = join_words(values.words);
     if (!values.extension.empty() && values.extension != "*") {
       if (!words.empty()) words += ' ';
-      words += "(__fish_complete_suffix ." + values.extension + ")";
+      words += "(__" + session.program + "_files " + values.extension + ")";
     }
     return words.empty() ? std::string() : " -a " + in_quotes(words);
   };
@@ -186,7 +199,16 @@ void print_fish(const std::vector<DeclaredCommand>& commands, const Session& ses
             << R"( completion $argv[1] $robot 2> /dev/null; and return
   end
 end
-)" << begin << " -f\n";
+function __)"
+            << session.program << R"(_files  # files of an extension, and folders
+  __fish_complete_suffix .$argv[1] | string match -r -- ".*(?:/|\\.$argv[1])(?:\t.*)?\$"
+end
+)" << begin << " -f\n"
+            << begin << " -n __fish_use_subcommand -a help -d " << in_quotes(kHelpMeaning) << '\n'
+            << begin << " -n __fish_use_subcommand -l help -s h -d " << in_quotes(kHelpMeaning) << '\n'
+            << begin << " -n __fish_use_subcommand -l version -s V -d " << in_quotes(kVersionMeaning) << '\n'
+            << begin << " -n '__fish_seen_subcommand_from help' -a " << in_quotes(join_words(names_of(commands)))
+            << '\n';
   for (const DeclaredCommand& command : commands) {
     std::cout << begin << " -n __fish_use_subcommand -a " << command.name << " -d " << in_quotes(command.meaning)
               << '\n';

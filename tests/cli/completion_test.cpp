@@ -82,6 +82,59 @@ TEST(Completion, ZshAndFishScriptsHaveEveryOption) {
   }
 }
 
+/// A folder with files of several extensions, in which command lines are completed.
+struct FilesToComplete : testing::StudyFolder {
+  FilesToComplete() {
+    for (const char* const name : {"a.toml", "b.h5", "c.txt"}) write(name, "\n");
+    std::filesystem::create_directory(path() + "/deeper");
+  }
+};
+
+TEST(Completion, FishCompletesCommandsOptionsNamesAndFiles) {
+  const std::string fish = "/usr/bin/fish";
+  if (!std::filesystem::exists(fish)) GTEST_SKIP() << "fish is not installed";
+  const FilesToComplete folder;
+  const auto completed = [&](const std::string& line) {
+    const std::string script = "set -x PATH (path dirname " PKM_PROGRAM
+                               ") $PATH; pkmopt completion fish | source; "
+                               "complete -C '" +
+                               line + "' | string replace -r '\t.*' ''";
+    const auto result = run_program({fish, "--no-config", "-c", script}, folder.path());
+    EXPECT_EQ(result.err, "") << line;
+    return lines_of(result.out);
+  };
+  EXPECT_THAT(completed("pkmopt re"), UnorderedElementsAre("report", "resume"));
+  EXPECT_THAT(completed("pkmopt --ver"), ElementsAre("--version"));
+  EXPECT_THAT(completed("pkmopt help re"), UnorderedElementsAre("report", "resume"));
+  EXPECT_THAT(completed("pkmopt run --see"), UnorderedElementsAre("--seed", "--seeds"));
+  EXPECT_THAT(completed("pkmopt run "), UnorderedElementsAre("a.toml", "deeper/"));
+  EXPECT_THAT(completed("pkmopt show "), UnorderedElementsAre("b.h5", "deeper/"));
+  EXPECT_THAT(completed("pkmopt pose 3crr"), ElementsAre("3crr-r-cru"));
+  EXPECT_THAT(completed("pkmopt new me"), ElementsAre("mechanism"));
+  EXPECT_THAT(completed("pkmopt evaluate 4ppa-2par --set l_"), UnorderedElementsAre("l_u=", "l_d="));
+  EXPECT_THAT(completed("pkmopt pose 4ppa-2par --limit beta"), UnorderedElementsAre("beta_min=", "beta_max="));
+}
+
+TEST(Completion, ZshCompletesCommandsOptionsNamesAndFiles) {
+  const std::string zsh = "/usr/bin/zsh";
+  if (!std::filesystem::exists(zsh)) GTEST_SKIP() << "zsh is not installed";
+  const FilesToComplete folder;
+  const auto result = run_program(
+      {zsh, "-f", PKM_TEST_DATA "/../cli/zsh_completion.zsh", PKM_PROGRAM, "pkmopt re", "pkmopt --ver",
+       "pkmopt help sim", "pkmopt run --liv", "pkmopt show ", "pkmopt pose 3cr", "pkmopt new ", "pkmopt new study 3cr",
+       "pkmopt evaluate 4ppa-2par --set l_", "pkmopt pose 4ppa-2par --limit beta_mi"},
+      folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  // The matches are listed before the line, if there are several.
+  for (const char* const expected :
+       {"report  -- Write the results", "resume  -- Resume a stopped study", "[pkmopt re]", "[pkmopt --version ]",
+        "[pkmopt help simulate ]", "[pkmopt run --live ]", "b.h5     deeper/", "[pkmopt pose 3crr-r-cru ]",
+        "mechanism  study", "[pkmopt new study 3crr-r-cru ]",
+        "l_d=  l_u=", "[pkmopt pose 4ppa-2par --limit beta_min=]"})
+    EXPECT_THAT(result.out, HasSubstr(expected));
+  EXPECT_THAT(result.out, Not(HasSubstr("_arguments")));  // an error message of zsh
+}
+
 TEST(Completion, UnknownShellIsRejectedWithTheClosestName) {
   const auto result = run_program({PKM_PROGRAM, "completion", "bsh"});
   EXPECT_EQ(result.exit_code, 2);
