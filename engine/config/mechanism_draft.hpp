@@ -166,7 +166,7 @@ struct MechanismDraft {
   limbs::Rotation turn{limbs::rotation_about(2, zero(), limbs::Term(model.graph, 1.0))};
   std::vector<PlatformMotion> motions;  ///< the motions of the platform, in the order of the file
   /// The rotations that `turn` does not contain yet, because they follow a dependent angle that has not been read.
-  std::vector<PlatformMotion> waiting_rotations;
+  std::vector<PlatformMotion> pending_rotations;
   std::vector<PlatformTurn> turns;           ///< the rotations that `turn` contains
   std::map<std::string, NamedFrame> frames;  ///< all frames of the mechanism, by name
   std::vector<std::string> frame_names;      ///< "base", "platform", and those of the [[frame]] tables

@@ -51,12 +51,12 @@ Term dependent(const PlatformMotion& motion, const ConfigValue& user, MechanismD
 
 /// The rotation of the platform, with all dependent angles.
 const Rotation& rotation_of_platform(const ConfigValue& platform, MechanismDraft& draft) {
-  while (!draft.waiting_rotations.empty()) {
-    const PlatformMotion motion = draft.waiting_rotations.front();
+  while (!draft.pending_rotations.empty()) {
+    const PlatformMotion motion = draft.pending_rotations.front();
     const Term angle = motion.coordinate ? draft.model.term(draft.model.coordinate(*motion.coordinate))
                                          : dependent(motion, platform, draft);
     add_rotation(motion, angle, draft);
-    draft.waiting_rotations.erase(draft.waiting_rotations.begin());
+    draft.pending_rotations.erase(draft.pending_rotations.begin());
   }
   return draft.turn;
 }
@@ -190,8 +190,8 @@ void read_coordinates(const ConfigValue& platform, MechanismDraft& draft) {
     }
     draft.motions.push_back(motion);
     if (!motion.rotates) continue;
-    draft.waiting_rotations.push_back(motion);
-    if (motion.coordinate && draft.waiting_rotations.size() == 1) rotation_of_platform(platform, draft);
+    draft.pending_rotations.push_back(motion);
+    if (motion.coordinate && draft.pending_rotations.size() == 1) rotation_of_platform(platform, draft);
   }
 }
 

@@ -21,7 +21,7 @@ struct Tolerance {
   double bound, sigma;
   /// true: the parameter has an independent error in each limb; false: the same error in all limbs.
   bool is_independent;
-  bool says_so;             ///< true: the file sets the key `copies`
+  bool has_copies_key;      ///< true: the file sets the key `copies`
   std::string common = {};  ///< name of the parameter without the name of a limb, such as "l_a"
 };
 
@@ -64,7 +64,8 @@ std::vector<Tolerance> read_errors(const ConfigValue& table, const std::vector<P
       throw value.error_of("an unknown parameter", "one of " + join(expected), nearest_name(common, expected));
     }
     if (find_named(all, name)) throw value.refusal("the parameter is there already");
-    Tolerance read{.name = name, .value = value, .bound = 0, .sigma = 0, .is_independent = true, .says_so = false};
+    Tolerance read{
+        .name = name, .value = value, .bound = 0, .sigma = 0, .is_independent = true, .has_copies_key = false};
     read.common = common;
     if (!value.is_table()) {
       read.bound = value.positive(parameter->unit);
@@ -81,8 +82,8 @@ std::vector<Tolerance> read_errors(const ConfigValue& table, const std::vector<P
         throw sigma->refusal("only a normal distribution has a standard deviation: distribution = \"normal\"");
       }
       read.is_independent = keys.word_at("copies") == "independent";
-      read.says_so = keys.has("copies");
-      if (read.says_so && name != common)
+      read.has_copies_key = keys.has("copies");
+      if (read.has_copies_key && name != common)
         throw keys.find("copies")->refusal(name + " is one copy; the key belongs to the parameter " + common);
     }
     all.push_back(std::move(read));
@@ -124,7 +125,7 @@ std::vector<LimbParameter> find_copies(const std::vector<Tolerance>& tolerances,
           names.empty() ? "a parameter on which joints or limits of a limb depend" : "one of " + join(names),
           nearest_name(each.name, names));
     }
-    if (each.says_so && each.is_independent)
+    if (each.has_copies_key && each.is_independent)
       throw each.value.refusal(draft.study.description ? "no joint or limit of a single limb depends on " + each.name +
                                                              "; expected copies = \"common\""
                                                        : "the limbs of this mechanism share " + each.name +

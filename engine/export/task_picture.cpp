@@ -109,10 +109,9 @@ class ComparisonDrawing {
     for (std::size_t r = 0; r < comparison_.robots.size(); ++r) {
       top_ += kTextLine;
       picture_.lines.push_back({{{kRightOf, top_ - 4}, {kRightOf + 22, top_ - 4}}, robot_colour(r), 4});
-      const std::string verdict = comparison_.robots[r].verdict();
+      const ComparedRobot& robot = comparison_.robots[r];
       add_text(kRightOf + 32, top_,
-               comparison_.robots[r].name +
-                   (verdict == "the task has no requirements" ? "" : ", does the task: " + verdict));
+               robot.name + (robot.has_requirements() ? ", does the task: " + robot.verdict() : ""));
     }
     right_ = kLeftOf + kFrameWidth + kRightOf;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "engine/core/catalogue.hpp"
 #include "engine/core/stop.hpp"
@@ -10,6 +11,7 @@
 #include "engine/generic/evaluation.hpp"
 #include "engine/generic/kinematics.hpp"
 #include "engine/generic/mechanism.hpp"
+#include "engine/geometry/pose_error.hpp"
 #include "engine/geometry/singular.hpp"
 
 namespace pkm::generic {
@@ -48,44 +50,32 @@ class ExactAccuracy {
     const PoseReport report = inspect_sample(e_, parameters_, pose, inputs);
     if (!report.J || is_singular(*report.J)) return {kNaN, kNaN};
     PlatformError worst;
-    for (unsigned vertex = 0; vertex < 1U << bounds.size(); ++vertex) {
-      AxisVector<double> joints = *report.joints;
-      for (std::size_t i = 0; i < bounds.size(); ++i) joints[i] += vertex >> i & 1U ? bounds[i] : -bounds[i];
-      if (!find_pose(joints, *report.J, pose, inputs)) return {kNaN, kNaN};
+    const bool is_complete = visit_vertices(bounds, [&](const AxisVector<double>& change) {
+      if (!find_pose(*report.joints + change, *report.J, pose, inputs)) return false;
       const PlatformError error = displacement(frame, outputs_of(e_.frame, inputs));
       worst = {std::fmax(worst.position, error.position), std::fmax(worst.angle, error.angle)};
-    }
-    return worst;
+      return true;
+    });
+    return is_complete ? worst : PlatformError{kNaN, kNaN};
   }
 
  private:
   void place(const Pose<double>& pose, std::vector<double>& inputs) const {
     std::ranges::copy(pose, inputs.begin() + static_cast<std::ptrdiff_t>(e_.model.inputs.coordinate(0)));
   }
-  /// Finds the pose with the given joint positions and writes its coordinates to `inputs`.
+  /// Finds the pose with the given joint positions and writes the coordinates of the last step but one, which are equal
+  /// to rounding, to `inputs`.
   /// @return false if Newton's method does not converge
-  bool find_pose(const AxisVector<double>& joints, const AxisMatrix<double>& J, Pose<double> pose,
+  bool find_pose(const AxisVector<double>& joints, const AxisMatrix<double>& J, const Pose<double>& near,
                  std::vector<double>& inputs) const {
-    constexpr int kMaxSteps = 100;
-    // Convergence criterion [m, rad]: once the steps are smaller than this, the method ends as soon as they do not
-    // become smaller any more.
-    constexpr double kConverged = 1e-9;
-    double last = std::numeric_limits<double>::infinity();
-    for (int step = 0; step < kMaxSteps; ++step) {
+    const auto correction = [&](const Pose<double>& pose) {
       place(pose, inputs);
-      const std::vector<double> found = outputs_of(e_.joints, inputs);
       AxisVector<double> rest = joints;
+      const std::vector<double> found = outputs_of(e_.joints, inputs);
       for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= found[i];
-      const AxisVector<double> change = solve(J, rest);
-      double size = 0;
-      for (std::size_t i = 0; i < pose.size(); ++i) {
-        pose[i] += change[i];
-        size += std::fabs(change[i]);
-      }
-      if (!(size < last)) return last < kConverged;
-      last = size;
-    }
-    return false;
+      return std::optional<AxisVector<double>>(solve(J, rest));
+    };
+    return refine_pose(near, correction).has_value();
   }
 
   const Evaluation& e_;

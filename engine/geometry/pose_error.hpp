@@ -1,10 +1,12 @@
-// First-order error of the platform's pose caused by bounded joint errors: dX = E e with |e_i| <= errors[i], where E is
-// the inverse of the Jacobian.
+// Errors of the platform's pose caused by bounded joint errors: to first order, dX = E e with |e_i| <= errors[i], where
+// E is the inverse of the Jacobian, and exactly, from the poses of the vertices of the box of joint errors.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +45,43 @@ inline std::array<double, 2> max_twist(const AxisMatrix<double>& E, std::span<co
     for (std::size_t part = 0; part < 2; ++part) max[part] = std::max(max[part], std::sqrt(squares[part]));
   }
   return max;
+}
+
+/// Calls visit(e) for every vertex e of the box |e_i| <= errors[i], until it returns false.
+/// @return false if a call has returned false
+template <class Visit>
+bool visit_vertices(std::span<const double> errors, const Visit& visit) {
+  for (unsigned vertex = 0; vertex < 1U << errors.size(); ++vertex) {
+    AxisVector<double> e(errors.size());
+    for (std::size_t i = 0; i < errors.size(); ++i) e[i] = vertex >> i & 1U ? errors[i] : -errors[i];
+    if (!visit(e)) return false;
+  }
+  return true;
+}
+
+/// Finds a pose with given joint positions by Newton's method.
+/// @param correction  correction(pose) returns the step J^-1 (joints - joints of the pose), std::nullopt where it is
+///                    undefined
+/// @return std::nullopt if the method does not converge
+template <class Correction>
+std::optional<Pose<double>> refine_pose(Pose<double> pose, const Correction& correction) {
+  constexpr int kMaxSteps = 100;
+  // Convergence criterion [m, rad]: once the steps are smaller than this, the method ends as soon as they do not become
+  // smaller any more.
+  constexpr double kConverged = 1e-9;
+  double last = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const std::optional<AxisVector<double>> change = correction(pose);
+    if (!change) return {};
+    double size = 0;
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+      pose[i] += (*change)[i];
+      size += std::fabs((*change)[i]);
+    }
+    if (!(size < last)) return last < kConverged ? std::optional(pose) : std::nullopt;
+    last = size;
+  }
+  return {};
 }
 
 }  // namespace pkm

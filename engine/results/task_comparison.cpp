@@ -232,11 +232,14 @@ const TaskValue* ComparedRobot::violated() const {
   return unknown;
 }
 
+bool ComparedRobot::has_requirements() const {
+  return std::ranges::any_of(values, [](const TaskValue& line) { return line.required.has_value(); });
+}
+
 std::string ComparedRobot::verdict() const {
   if (const TaskValue* const line = violated())
     return std::isnan(line->value) ? "unknown: " + line->name : "no: " + line->name;
-  const bool is_asked = std::ranges::any_of(values, [](const TaskValue& line) { return line.required.has_value(); });
-  return is_asked ? "yes" : "the task has no requirements";
+  return has_requirements() ? "yes" : "the task has no requirements";
 }
 
 TaskComparison compare_in_task(const Task& task, const std::vector<TaskRobot>& robots, const Catalogues& catalogues,

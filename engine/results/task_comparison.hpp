@@ -45,6 +45,8 @@ struct ComparedRobot {
   /// The first part of the task that the robot cannot perform; if there is none, the first part for which it is unknown
   /// whether the robot can perform it; null if there is neither.
   const TaskValue* violated() const;
+  /// Returns true if the task has a value that the robot must reach.
+  bool has_requirements() const;
   /// Whether the robot can perform the task, as text: "yes", "no: bin: margin", "unknown: ..", or "the task has no
   /// requirements".
   std::string verdict() const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/config/study_additions.hpp"
 #include "engine/geometry/pose_error.hpp"
@@ -18,28 +17,15 @@ AxisMatrix<double> pseudo_inverse(const AxisMatrix<double>& J) { return solve(tr
 
 /// The pose with these joint coordinates, by Newton's method, or, if there are more joints than coordinates, the pose
 /// that fits them best, by the Gauss-Newton method; std::nullopt if it does not converge.
-std::optional<Pose<double>> pose_of_joints(const Target& target, const std::string& mode, Pose<double> pose,
+std::optional<Pose<double>> pose_of_joints(const Target& target, const std::string& mode, const Pose<double>& near,
                                            const AxisVector<double>& joints) {
-  constexpr int kMaxSteps = 50;
-  double last = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < kMaxSteps; ++step) {
+  return refine_pose(near, [&](const Pose<double>& pose) -> std::optional<AxisVector<double>> {
     const PoseReport report = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
     if (!report.assembles || !report.J || is_rank_deficient(*report.J)) return {};
-    AxisVector<double> rest = joints;
-    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= (*report.joints)[i];
-    const AxisVector<double> change = report.J->rows() == report.J->cols()
-                                          ? solve(*report.J, rest)
-                                          : AxisVector<double>(pseudo_inverse(*report.J) * rest);
-    double size = 0;
-    for (std::size_t i = 0; i < pose.size(); ++i) {
-      pose[i] += change[i];
-      size = std::max(size, std::fabs(change[i]));
-    }
-    // Either rounding errors prevent a further decrease, or the iteration does not converge.
-    if (!(size < last)) return last < 1e-9 ? std::optional(pose) : std::nullopt;
-    last = size;
-  }
-  return {};
+    const AxisVector<double> rest = joints - *report.joints;
+    if (report.J->rows() == report.J->cols()) return solve(*report.J, rest);
+    return pseudo_inverse(*report.J) * rest;
+  });
 }
 
 /// The largest errors of each coordinate and of the position over all vertices of the box of joint errors; std::nullopt
@@ -49,14 +35,9 @@ std::optional<std::vector<double>> worst_corner(const Target& target, const std:
   const MechanismInfo& info = target.info();
   const PoseReport at = target.mechanism->inspect(target.parameters, pose, mode, target.limits);
   std::vector<double> worst(info.coordinates.size() + 1, 0.0);
-  for (unsigned corner = 0; corner < 1U << errors.size(); ++corner) {
-    AxisVector<double> joints = *at.joints, change(errors.size());
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      change[i] = (corner >> i & 1U ? 1 : -1) * errors[i];
-      joints[i] += change[i];
-    }
-    const auto found = pose_of_joints(target, mode, pose + inverse * change, joints);
-    if (!found) return {};
+  const bool is_complete = visit_vertices(errors, [&](const AxisVector<double>& change) {
+    const auto found = pose_of_joints(target, mode, pose + inverse * change, *at.joints + change);
+    if (!found) return false;
     double square = 0;
     for (std::size_t i = 0; i < pose.size(); ++i) {
       const double error = (*found)[i] - pose[i];
@@ -64,8 +45,9 @@ std::optional<std::vector<double>> worst_corner(const Target& target, const std:
       if (!info.coordinates[i].turns()) square += error * error;
     }
     worst.back() = std::max(worst.back(), std::sqrt(square));
-  }
-  return worst;
+    return true;
+  });
+  return is_complete ? std::optional(worst) : std::nullopt;
 }
 
 }  // namespace
