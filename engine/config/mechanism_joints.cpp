@@ -43,7 +43,7 @@ class JointReader {
   generic::JointedBodies read(const std::vector<ConfigValue>& tables) {
     add_solid("platform", {.name = "platform",
                            .point = nodes(draft_.origin),
-                           .with_platform = true,
+                           .is_platform = true,
                            .rotation = rotation_nodes(draft_.frames.at(kPlatformFrame))});
     for (const BodyNodes& body : model_.bodies) {
       if (!body.part_of.empty() || is_of_limb(body.name) || body.name == "platform") continue;

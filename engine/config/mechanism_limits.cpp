@@ -70,7 +70,7 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
     const std::string name = name_of(table, model.margins), unit = unit_of(table);
     constexpr const char* kFormula = "a formula that is >= 0 where the pose is feasible, or a list of such formulas";
     const ConfigValue formula = table.at("formula", kFormula);
-    generic::ReportedMargin reported{.name = name, .first = model.margins.size()};
+    generic::ReportedMargin reported{.name = name, .unit = unit, .first = model.margins.size()};
     const auto formulas = formula.is_list() ? formula.elements(kFormula) : std::vector{formula};
     if (formulas.empty()) throw formula.error(kFormula);
     reported.count = formulas.size();
@@ -78,7 +78,8 @@ void read_margins(const ConfigValue& root, MechanismDraft& draft) {
       model.margins.push_back({name, unit, draft.scope.formula(each, unit, name).node()});
     const auto shown = table.find("shown"), shown_unit = table.find("shown_unit");
     if (shown_unit && !shown) throw shown_unit->refusal("`shown_unit` requires `shown`");
-    if (shown) reported.shown = draft.scope.formula(*shown, shown_unit ? si_unit(*shown_unit) : unit, name).node();
+    if (shown_unit) reported.unit = si_unit(*shown_unit);
+    if (shown) reported.shown = draft.scope.formula(*shown, reported.unit, name).node();
     if (shown || reported.count > 1) model.reported_margins.push_back(reported);
   }
   for (const ConfigValue& table : root.tables("design")) {

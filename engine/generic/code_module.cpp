@@ -124,7 +124,7 @@ class Collector {
       Node value = group.shown ? *group.shown : model_.margins[group.first].node;
       for (std::size_t i = group.first + 1; !group.shown && i < next; ++i)
         value = graph_.apply(expression::operation("min"), std::array{value, model_.margins[i].node});
-      add(group.name, group.shown ? "" : model_.margins[group.first].unit, value);
+      add(group.name, group.unit, value);
     }
     add_single_ones(model_.margins.size());
     output.rows = output.nodes.size();

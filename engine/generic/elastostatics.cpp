@@ -171,7 +171,7 @@ PlatformCompliance platform_compliance(const Evaluation& evaluation, std::span<c
 
   // The loads are six unit wrenches on the platform, acting at the origin of the platform frame. Lengths are divided by
   // `size`, so that matrix ranks do not depend on units.
-  const auto platform = static_cast<std::size_t>(std::ranges::find(bodies.solids, true, &SolidNodes::with_platform) -
+  const auto platform = static_cast<std::size_t>(std::ranges::find(bodies.solids, true, &SolidNodes::is_platform) -
                                                  bodies.solids.begin());
   const double size = couple_length(system);
   MatrixXd B = MatrixXd::Zero(A.rows(), 6);

@@ -52,7 +52,7 @@ class JointsAtPose {
   JointsAtPose(const Evaluation& e, std::span<const double> parameters, const Pose<double>& pose, std::size_t mode)
       : of_(*e.model.jointed),
         rotation_(e.model.rotation),
-        platform_(static_cast<std::size_t>(std::ranges::find(of_.solids, true, &SolidNodes::with_platform) -
+        platform_(static_cast<std::size_t>(std::ranges::find(of_.solids, true, &SolidNodes::is_platform) -
                                            of_.solids.begin())),
         drives_(e.model.inputs.joints) {
     const Inputs& inputs = e.model.inputs;

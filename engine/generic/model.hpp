@@ -56,7 +56,7 @@ struct Result {
 /// A group of consecutive margins of a model, with indices [first, first + count), that is reported as a single margin:
 /// the value of `shown` if it is present, otherwise the minimum of the group.
 struct ReportedMargin {
-  std::string name;
+  std::string name, unit;
   std::size_t first = 0, count = 1;
   std::optional<Node> shown{};
 };
@@ -193,7 +193,7 @@ struct SolidNodes {
   std::optional<std::array<Node, 3>> line{};
   /// Offset of the solid's centre of mass from that of `bodies`; std::nullopt: there is none.
   std::optional<std::array<Node, 3>> centre_offset{};
-  bool with_platform = false;  ///< true: the solid is the platform
+  bool is_platform = false;  ///< true: the solid is the platform
   /// Rotation of the platform or of a [[frame]], by rows; std::nullopt: the body rotates with `line`, if at all.
   std::optional<std::array<std::array<Node, 3>, 3>> rotation{};
 

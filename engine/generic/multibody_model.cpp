@@ -84,7 +84,7 @@ class MultibodyBuilder {
     check_motions();
     check_drives();
     check_mobility(built);
-    built.platform = 1 + static_cast<std::size_t>(std::ranges::find(of_.solids, true, &SolidNodes::with_platform) -
+    built.platform = 1 + static_cast<std::size_t>(std::ranges::find(of_.solids, true, &SolidNodes::is_platform) -
                                                   of_.solids.begin());
     built.origin = origin();
     built.rotation = rotation();

@@ -42,7 +42,7 @@ class System {
     NewtonEuler system;
     for (const SolidNodes& solid : model_.jointed->solids) system.bodies.push_back(body_of(solid));
     for (const JointNodes& joint : model_.jointed->joints) system.joints.push_back(joint_of(joint));
-    const auto found = std::ranges::find(model_.jointed->solids, true, &SolidNodes::with_platform);
+    const auto found = std::ranges::find(model_.jointed->solids, true, &SolidNodes::is_platform);
     RigidBody& platform = system.bodies[static_cast<std::size_t>(found - model_.jointed->solids.begin())];
     apply(platform, at(*model_.wrench_point).x, Vec{{wrench[0], wrench[1], wrench[2]}},
           Vec{{wrench[3], wrench[4], wrench[5]}});

@@ -21,10 +21,9 @@ struct MarginScratch {
 
 std::string unit_of_margin(const Mechanism& mechanism, const std::string& name) {
   if (const Evaluation* const e = evaluation_of(mechanism)) {
-    const ReportedMargin* const group = find_named(e->model.reported_margins, name);
-    if (group && !group->shown) return e->model.margins[group->first].unit;
+    if (const ReportedMargin* const group = find_named(e->model.reported_margins, name)) return group->unit;
     for (const auto* const margins : {&e->model.domains, &e->model.margins})
-      if (const Result* const margin = find_named(*margins, name); margin && !group) return margin->unit;
+      if (const Result* const margin = find_named(*margins, name)) return margin->unit;
   }
   const LimitInfo* const limit = find_named(mechanism.info().limits, name);
   return limit ? limit->unit : "";

@@ -118,7 +118,7 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
                near = (ends_in_lines() && !scratch.for_gradient ? kBracketWidthOfLines : kBracketWidth) * range;
   IntegralScratch::Level& own = scratch.levels[level];
   const bool is_innermost = level + 1 == levels(), are_columns = is_innermost && ends_in_lines(),
-             are_sections = is_innermost && !ends_in_lines();
+             are_planar_slices = is_innermost && !ends_in_lines();
   // 1 + index of the independent constraint that is violated only on one side of the critical value; 0 if there is none
   std::uint32_t closing = 0;
   own.solver.reset(are_columns);
@@ -134,8 +134,8 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
       find_features(level, own.features, scratch);
       own.solver.add_sample(at, is_upper, found.hash, own.features,
                             [&](const BoundaryFeature& feature, const BoundaryFeature& other) {
-                              return are_sections ? PlanarSlice::distance(feature, other, scratch.planar_slice)
-                                                  : std::numeric_limits<double>::infinity();
+                              return are_planar_slices ? PlanarSlice::distance(feature, other, scratch.planar_slice)
+                                                       : std::numeric_limits<double>::infinity();
                             });
     }
     return found;
@@ -174,7 +174,7 @@ void NestedIntegral::bracket(std::size_t level, Slice& low, Slice& high, double 
     // The sample has neither the type of `low` nor the type of `high`: rounding errors may have determined its type.
     if (extrapolates && next.hash != low.hash && next.hash != high.hash) {
       extrapolates = false;
-      if (are_sections) {
+      if (are_planar_slices) {
         low = outer[0];
         high = outer[1];
         continue;
