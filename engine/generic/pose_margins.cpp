@@ -29,6 +29,12 @@ std::string unit_of_margin(const Mechanism& mechanism, const std::string& name) 
   return limit ? limit->unit : "";
 }
 
+std::string unit_of_passive_joint(const Mechanism& mechanism, const std::string& name) {
+  const Evaluation* const e = evaluation_of(mechanism);
+  const Result* const joint = e ? find_named(e->model.angles, name) : nullptr;
+  return joint ? joint->unit : "rad";
+}
+
 template <class S>
 void append_margins(const Evaluation& e, std::span<const S> parameters, std::size_t mode, const LimitSpec& limits,
                     std::span<const Pose<double>> poses, Scratch& scratch, std::vector<S>& margins) {

@@ -27,4 +27,7 @@ void append_ordered_margins(const Evaluation& evaluation, std::span<const S> par
 /// or of a similar operation, or because the mechanism is not from a file.
 std::string unit_of_margin(const Mechanism& mechanism, const std::string& name);
 
+/// Unit of the passive joint `name` of PoseReport::angles: "m" for a slide of a mechanism file, otherwise "rad".
+std::string unit_of_passive_joint(const Mechanism& mechanism, const std::string& name);
+
 }  // namespace pkm::generic

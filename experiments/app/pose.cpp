@@ -231,9 +231,12 @@ std::string pose(const Target& target, const PoseArguments& arguments, const std
   json["angles"] = values_by_name(report.angles);
   std::vector<Row> angles;
   for (const auto& [name, value] : report.angles) {
-    // A value whose name is not that of a quantity of the mechanism is the clearance or the angle of a passive joint.
+    // A value whose name is not that of a quantity of the mechanism is the clearance or the value of a passive joint.
     const QuantityInfo* const quantity = find_named(info.quantities, name);
-    angles.push_back({name, number(value, quantity ? quantity->unit : name == "clearance" ? "m" : "rad")});
+    const std::string unit = quantity              ? quantity->unit
+                             : name == "clearance" ? "m"
+                                                   : generic::unit_of_passive_joint(mechanism, name);
+    angles.push_back({name, number(value, unit)});
   }
   out.add_table("angles and lengths", angles);
   report_quantities(info, at, mechanism.quantities(target.parameters, mode, target.limits, at), out);
