@@ -152,15 +152,9 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
     (has ? can : cannot).push_back({what, has ? how : why});
   };
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
-  const std::string no_columns = why_no_columns(mechanism);
-  tell(mechanism.columns() && no_columns.empty(), "exact workspace by columns",
-       "workspace.method = \"columns\", with derivatives by all parameters", no_columns);
-  const LimitedDrives* const limited = find_limited_drives(mechanism);
-  const bool has_cables = limited && !limited->cables().empty();
-  tell(mechanism.bounds(), "certified bounds of the workspace",
-       std::string("pkmopt certify, by interval arithmetic") +
-           (has_cables ? "; intervals of the tensions are wide, so that large boxes may stay undecided" : ""),
-       "");
+  tell(mechanism.columns(), "exact workspace by columns",
+       "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
+  tell(mechanism.bounds(), "certified bounds of the workspace", "pkmopt certify, by interval arithmetic", "");
   const Unsupported undefined = why_no_conditioning(mechanism.info());
   tell(!undefined, "conditioning", "", undefined.value_or(""));
   for (const UndefinedQuantity& quantity : mechanism.info().undefined_quantities)

@@ -241,6 +241,20 @@ void add_forces(const ConfigValue& root, const ConfigValue* study, MechanismDraf
   model.margins.push_back(closure ? generic::Result{"wrench-closure", "1", balance.factor.node()}
                                   : generic::Result{"wrench-feasible", "N", balance.reserve.node()});
   draft.scope.mark_as_defined(model.margins.back().node);
+  generic::BalanceNodes balanced{.margin = model.margins.back().node, .J = {}, .loads = {}};
+  for (std::size_t i = 0; i < joints * coordinates; ++i)
+    balanced.J.push_back(kinematics.J(i / coordinates, i % coordinates).node());
+  const auto nodes_of = [](const std::vector<Term>& terms) {
+    std::vector<expression::Node> nodes;
+    for (const Term& term : terms) nodes.push_back(term.node());
+    return nodes;
+  };
+  for (const LoadSet& set : loads) {
+    if (closure) break;
+    balanced.loads.push_back({nodes_of(set.centre), {}});
+    for (const auto& axis : set.half_axes) balanced.loads.back().half_axes.push_back(nodes_of(axis));
+  }
+  model.balance = std::move(balanced);
 }
 
 }  // namespace pkm

@@ -25,12 +25,19 @@ struct Solutions {
   MatrixXd basis;
 };
 
-/// Solves J^T diag(scale) y = f.
-Solutions solutions_of(const AxisMatrix<double>& J, const VectorXd& scale, const VectorXd& f) {
+/// diag(scale) J
+MatrixXd scaled_jacobian(const AxisMatrix<double>& J, const VectorXd& scale) {
   const auto m = static_cast<Index>(J.rows()), n = static_cast<Index>(J.cols());
   MatrixXd scaled(m, n);
   for (Index i = 0; i < m; ++i)
     for (Index j = 0; j < n; ++j) scaled(i, j) = scale(i) * J(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+  return scaled;
+}
+
+/// Solves J^T diag(scale) y = f.
+Solutions solutions_of(const AxisMatrix<double>& J, const VectorXd& scale, const VectorXd& f) {
+  const auto m = static_cast<Index>(J.rows()), n = static_cast<Index>(J.cols());
+  const MatrixXd scaled = scaled_jacobian(J, scale);
   // With the decomposition scaled P = Q R, the solutions are y = Q (R^-T P^T f, lambda).
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled);
   const MatrixXd Q = qr.householderQ();
@@ -40,7 +47,10 @@ Solutions solutions_of(const AxisMatrix<double>& J, const VectorXd& scale, const
 }
 
 /// The lambda of least norm with lower <= particular + basis lambda <= upper; std::nullopt if no lambda satisfies this.
-std::optional<VectorXd> nearest(const Solutions& y, const VectorXd& lower, const VectorXd& upper) {
+/// @param multipliers  if no lambda satisfies the limits, receives a vector v with basis^T v = 0 and v^T y < v^T
+///                     particular for all y within the limits
+std::optional<VectorXd> nearest(const Solutions& y, const VectorXd& lower, const VectorXd& upper,
+                                VectorXd* multipliers = nullptr) {
   const Index r = y.basis.cols();
   // All limits are divided by `length`, which exceeds |lambda| if all limits are finite. In this case, the residual of
   // the least squares is at least 1 / sqrt(2) if a lambda satisfies the limits, and 0 if none does. If a limit is
@@ -51,8 +61,10 @@ std::optional<VectorXd> nearest(const Solutions& y, const VectorXd& lower, const
       if (std::isfinite(limit)) square += limit * limit;
   const double length = square > 0 ? std::sqrt(square) : 1, empty = lower.allFinite() && upper.allFinite() ? 0.5 : 1e-3;
   std::vector<std::vector<double>> columns;
+  std::vector<std::pair<Index, double>> origins;  // row of the basis and sign of each column
   const auto add = [&](Index i, double sign, double limit) {
     if (!std::isfinite(limit)) return;
+    origins.emplace_back(i, sign);
     std::vector<double> column;
     for (Index k = 0; k < r; ++k) column.push_back(sign * y.basis(i, k));
     column.push_back(sign * (limit - y.particular(i)) / length);
@@ -64,11 +76,16 @@ std::optional<VectorXd> nearest(const Solutions& y, const VectorXd& lower, const
   }
   std::vector<double> target(static_cast<std::size_t>(r) + 1, 0.0);
   target.back() = 1;
-  const std::vector<double> u = non_negative_least_squares(columns, target, empty);
+  const std::vector<double> u = non_negative_least_squares(columns, target, multipliers ? 1e-12 : empty);
   VectorXd residual = -Eigen::Map<const VectorXd>(target.data(), r + 1);
   for (std::size_t k = 0; k < columns.size(); ++k)
     residual += u[k] * Eigen::Map<const VectorXd>(columns[k].data(), r + 1);
-  if (!(residual.norm() > empty)) return {};
+  if (!(residual.norm() > empty)) {
+    if (!multipliers) return {};
+    multipliers->setZero(lower.size());
+    for (std::size_t k = 0; k < columns.size(); ++k) (*multipliers)(origins[k].first) -= u[k] * origins[k].second;
+    return {};
+  }
   const VectorXd lambda = residual.head(r) * (-length / residual(r)), forces = y.particular + y.basis * lambda;
   constexpr double kRounding = 1e-9;
   const bool is_within =
@@ -153,6 +170,29 @@ std::optional<AxisVector<double>> distribute_forces(const AxisMatrix<double>& J,
   for (std::size_t i = 0; i < tau.size(); ++i)
     tau[i] = std::clamp(forces(static_cast<Index>(i)), limits.lower[i], limits.upper[i]);
   return tau;
+}
+
+std::optional<AxisVector<double>> separating_vector(const AxisMatrix<double>& J, const AxisVector<double>& f,
+                                                    const DriveLimits& limits) {
+  if (is_rank_deficient(J)) return {};
+  const VectorXd scale = eigen_vector(limits.scale), lower = eigen_vector(limits.lower).cwiseQuotient(scale),
+                 upper = eigen_vector(limits.upper).cwiseQuotient(scale);
+  const Solutions y = solutions_of(J, scale, eigen_vector(f));
+  // Bisect how far the limits have to be widened until some forces satisfy them.
+  const double most = std::max((lower - y.particular).maxCoeff(), (y.particular - upper).maxCoeff());
+  if (!(most > 0)) return {};
+  const auto within = [&](double widening, VectorXd* multipliers = nullptr) {
+    return nearest(y, lower.array() - widening, upper.array() + widening, multipliers);
+  };
+  const double sufficient = most - bisect(most, [&](double by) { return within(most - by).has_value(); });
+  VectorXd v;
+  constexpr double kBelow = 0.999;  // limits that are slightly too narrow have multipliers that are almost unique
+  if (within(kBelow * sufficient, &v) || v.size() == 0) return {};
+  // v is in the range of diag(scale) J, because it is normal to the null space of the transposed matrix.
+  const VectorXd solution = scaled_jacobian(J, scale).colPivHouseholderQr().solve(v);
+  AxisVector<double> c(J.cols());
+  for (std::size_t j = 0; j < c.size(); ++j) c[j] = solution(static_cast<Index>(j));
+  return c;
 }
 
 AxisMatrix<double> internal_forces(const AxisMatrix<double>& J) {

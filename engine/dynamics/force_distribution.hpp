@@ -37,6 +37,12 @@ DriveLimits no_drive_limits(std::size_t joints);
 std::optional<AxisVector<double>> distribute_forces(const AxisMatrix<double>& J, const AxisVector<double>& f,
                                                     const DriveLimits& limits);
 
+/// A vector c with c^T J^T tau < c^T f for all tau within the limits (Farkas' lemma), which proves that no such tau
+/// balances f; std::nullopt if there is none. Of several, c belongs to the limits that have to be widened most.
+/// @param J  Jacobian, joints x coordinates, of full rank
+std::optional<AxisVector<double>> separating_vector(const AxisMatrix<double>& J, const AxisVector<double>& f,
+                                                    const DriveLimits& limits);
+
 /// Orthonormal basis of the internal forces: drive forces that balance each other. The largest component of each column
 /// is positive.
 /// @param J  Jacobian, joints x coordinates, of full rank

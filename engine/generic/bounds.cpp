@@ -6,6 +6,7 @@
 
 #include "engine/generic/interval_constraints.hpp"
 #include "engine/generic/tolerances/interval_jacobians.hpp"
+#include "engine/workspace/bounds/force_balance.hpp"
 #include "engine/workspace/bounds/pose_box.hpp"
 #include "engine/workspace/bounds/proof.hpp"
 #include "engine/workspace/bounds/separation.hpp"
@@ -26,6 +27,40 @@ std::vector<Interval> inputs_of(const Mechanism& mechanism, const Evaluation& e,
     inputs[e.model.inputs.coordinate(static_cast<std::size_t>(coordinate))] =
         fixed_value(mechanism, parameters, plan, coordinate);
   return inputs;
+}
+
+/// The balance of the drive forces; the model has one.
+bounds::BalanceFormulas balance_of(const Model& model) {
+  const BalanceNodes& balance = *model.balance;
+  const std::size_t n = model.inputs.coordinates;
+  bounds::BalanceFormulas formulas{.joints = model.inputs.joints,
+                                   .coordinates = n,
+                                   .is_limited = {},
+                                   .half_axes = {},
+                                   .is_closure = balance.loads.empty(),
+                                   .all = balance.J};
+  const auto append = [&](const std::vector<Node>& nodes) {
+    formulas.all.insert(formulas.all.end(), nodes.begin(), nodes.end());
+  };
+  for (const auto& tension : model.tensions) {
+    formulas.is_limited.push_back(tension.has_value());
+    if (tension) append({(*tension)[0], (*tension)[1]});
+  }
+  for (const BalanceNodes::Loads& loads : balance.loads) {
+    formulas.half_axes.push_back(loads.half_axes.size());
+    append(loads.centre);
+    for (const auto& axis : loads.half_axes) append(axis);
+  }
+  if (formulas.is_closure) formulas.half_axes.push_back(0);
+  return formulas;
+}
+
+/// Decides the margin of cables by the balance of forces.
+void decide_by_balance(const Model& model, const IntervalConstraints& constraints, const std::vector<std::size_t>& axes,
+                       const std::vector<Interval>& inputs, bounds::Constraints& conditions) {
+  if (!constraints.balance) return;
+  conditions.decide_by_balance(constraints.all[*constraints.balance].node,
+                               std::make_shared<bounds::ForceBalance>(model.graph, balance_of(model), axes, inputs));
 }
 
 }  // namespace
@@ -154,7 +189,8 @@ PoseCertificate certify_solid(const Evaluation& e, std::span<const double> param
   std::vector<std::size_t> axes;
   for (std::size_t i = 0; i < poses.ranges.size(); ++i) axes.push_back(e.model.inputs.coordinate(i));
   const IntervalConstraints constraints = interval_constraints(e.model, inputs);
-  const bounds::Constraints conditions(constraints.graph, constraints.all, axes, inputs);
+  bounds::Constraints conditions(constraints.graph, constraints.all, axes, inputs);
+  decide_by_balance(e.model, constraints, axes, inputs, conditions);
   Graph graph;
   std::optional<bounds::Matrices> matrices;
   const Unsupported not_examined = refuse_jacobians(e.model.inputs);
@@ -176,7 +212,16 @@ PoseCertificate certify_motion(const Evaluation& e, std::span<const double> para
   std::vector<Interval> inputs = design;
   const std::size_t time = substitute_motion(motion, e.model.inputs, constraints.graph, inputs, roots);
   for (std::size_t i = 0; i < roots.size(); ++i) constraints.all[i].node = roots[i];
-  const bounds::Constraints conditions(constraints.graph, constraints.all, {time}, inputs);
+  bounds::Constraints conditions(constraints.graph, constraints.all, {time}, inputs);
+  if (constraints.balance) {
+    Graph graph = e.model.graph;
+    bounds::BalanceFormulas balance = balance_of(e.model);
+    std::vector<Interval> balance_inputs = design;
+    const std::size_t at = substitute_motion(motion, e.model.inputs, graph, balance_inputs, balance.all);
+    conditions.decide_by_balance(
+        constraints.all[*constraints.balance].node,
+        std::make_shared<bounds::ForceBalance>(graph, balance, std::vector{at}, balance_inputs));
+  }
   std::optional<bounds::Matrices> matrices;
   const Unsupported not_examined = refuse_jacobians(e.model.inputs);
   if (!not_examined) matrices = jacobians_along(motion, e.model, design);

@@ -148,8 +148,11 @@ IntervalConstraints interval_constraints(const Model& model, const std::vector<I
     }
     to = made.graph.apply_like(entry, arguments);
   }
-  for (const auto& constraint : constraints)
+  for (const auto& constraint : constraints) {
+    // The margin of a balance is neither a difference nor a root, and therefore among the constraints as it is.
+    if (model.balance && constraint.node == model.balance->margin) made.balance = made.all.size();
     made.all.push_back({constraint.name, copies[static_cast<std::size_t>(constraint.node)]});
+  }
   return made;
 }
 

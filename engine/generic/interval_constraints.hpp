@@ -11,6 +11,7 @@ namespace pkm::generic {
 struct IntervalConstraints {
   Graph graph;
   std::vector<bounds::NamedConstraint> all;  ///< the constraints, as nodes of `graph`
+  std::optional<std::size_t> balance;        ///< index of the constraint that Model::balance describes
 };
 
 /// Rewrites the domains and margins of a model. The resulting constraints are all satisfied if and only if those of the

@@ -258,6 +258,17 @@ struct EquationNodes {
   std::vector<Node> J, J_rate_X, M_X, h_X, G_X, J_wrench;
 };
 
+/// The balance of the loads by drives with limits of the tension, which a margin states.
+struct BalanceNodes {
+  struct Loads {
+    std::vector<Node> centre;                  ///< by coordinate
+    std::vector<std::vector<Node>> half_axes;  ///< the loads are centre + sum of u_k half_axes[k] for all |u_k| <= 1
+  };
+  Node margin{};
+  std::vector<Node> J;       ///< joints x coordinates, row by row
+  std::vector<Loads> loads;  ///< sets of loads; empty: the tensions balance each other (wrench closure)
+};
+
 class ContractedBox;
 
 /// A mechanism as described by its file. Constraints are satisfied if they are >= 0. Vectors are in the base frame.
@@ -354,6 +365,7 @@ struct Model {
   std::optional<JointedBodies> jointed;             ///< present if the file describes all joints
   /// Minimum and maximum tension [N] of the cable that drives a joint, by joint; std::nullopt: it is no cable.
   std::vector<std::optional<std::array<Node, 2>>> tensions;
+  std::optional<BalanceNodes> balance;  ///< present if there are cables
   /// How redundant drives share a load, and the force or torque by which that of each drive is divided in the norm that
   /// is minimised, by joint; empty: equal for all drives.
   ForceSharing sharing = ForceSharing::least_norm;

@@ -1,9 +1,12 @@
 #include "engine/workspace/bounds/constraints.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <span>
 
 #include "engine/expression/derivative.hpp"
 #include "engine/expression/interval_steps.hpp"
+#include "engine/workspace/bounds/force_balance.hpp"
 
 namespace pkm::bounds {
 
@@ -78,6 +81,7 @@ Constraints::Subprogram Constraints::extract(std::size_t first_output, std::size
 void Constraints::set_box(const IntervalBox& box, Scratch& scratch) const {
   for (std::size_t axis = 0; axis + 1 < axes_.size(); ++axis)
     if (registers_[axis]) scratch.registers_[*registers_[axis]] = box[axis];
+  scratch.box_ = box;
   scratch.box_version_ = ++scratch.version_;
   // An empty side differs from the sides of all boxes, so that run() computes all values again.
   scratch.last_side_ = Interval::empty();
@@ -96,7 +100,25 @@ void Constraints::run(const Subprogram& subprogram, const Interval& last_side, S
   expression::run_steps(subprogram.last_steps, scratch.last_version_, scratch.versions_, scratch.registers_);
 }
 
+void Constraints::decide_by_balance(Node node, std::shared_ptr<const ForceBalance> balance) {
+  balance_ = std::move(balance);
+  balanced_ = static_cast<std::size_t>(std::ranges::find(all_, node, &Constraint::node) - all_.begin());
+}
+
 Interval Constraints::value(std::size_t k, const Interval& last_side, Scratch& scratch) const {
+  if (balance_ && k == balanced_) {
+    scratch.box_[axes_.size() - 1] = last_side;
+    const auto sides = std::span(scratch.box_).first(axes_.size());
+    constexpr double kMax = std::numeric_limits<double>::max(), kMin = std::numeric_limits<double>::denorm_min();
+    if (!std::ranges::all_of(sides, &Interval::is_number)) switch (balance_->examine(scratch.box_)) {
+        case ForceBalance::Result::balanced:
+          return {0, kMax};
+        case ForceBalance::Result::not_balanced:
+          return {-kMax, -kMin};
+        case ForceBalance::Result::undecided:
+          break;
+      }
+  }
   run(all_[k].value, last_side, scratch);
   return scratch.registers_[all_[k].value.outputs.front()];
 }

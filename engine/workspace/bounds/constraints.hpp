@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@
 namespace pkm::bounds {
 
 inline constexpr std::size_t kMaxAxes = kMaxCoordinates;
+
+class ForceBalance;
 
 /// Sides of a box by axis; elements beyond the number of axes are unused.
 using IntervalBox = std::array<Interval, kMaxAxes>;
@@ -44,12 +47,18 @@ class Constraints {
                                             ///< that do not depend on the last axis were run
     std::uint64_t version_ = 0, box_version_ = 0, last_version_ = 0;
     Interval last_side_;  ///< side of the box along the last axis
+    IntervalBox box_;     ///< sides of the box along the other axes
   };
 
   /// @param axes    indices of the graph's inputs that are the axes
   /// @param inputs  values of all inputs of the graph; inputs that are not axes keep these values
   Constraints(expression::Graph graph, const std::vector<NamedConstraint>& constraints, std::vector<std::size_t> axes,
               std::vector<Interval> inputs);
+
+  /// Decides a constraint on boxes by the balance of forces, which it states; its formula is evaluated where that is
+  /// undecided, and at single poses.
+  /// @param node  node of the constraint in the graph passed to the constructor
+  void decide_by_balance(expression::Node node, std::shared_ptr<const ForceBalance> balance);
 
   /// Number of distinct constraints: identical ones are merged.
   std::size_t size() const { return all_.size(); }
@@ -87,6 +96,8 @@ class Constraints {
   /// For each axis, the register of its input; std::nullopt: no constraint depends on the axis.
   std::vector<std::optional<std::uint32_t>> registers_;
   std::vector<Constraint> all_;
+  std::shared_ptr<const ForceBalance> balance_;  ///< null if there is none
+  std::size_t balanced_ = 0;                     ///< index of the constraint that `balance_` decides
   Scratch initial_;
 };
 

@@ -281,6 +281,57 @@ TEST(Cables, CertifiedBoxes) {
   EXPECT_EQ(over(-0.55).kind, PropertyResult::Kind::fails);
 }
 
+/// Poses of a box of positions: its vertices, and some poses between them.
+std::vector<std::vector<double>> poses_in(const std::vector<std::array<double, 2>>& box, std::mt19937& random) {
+  std::vector<std::vector<double>> poses;
+  for (unsigned k = 0; k < 24; ++k) {
+    std::vector<double> pose;
+    for (std::size_t i = 0; i < box.size(); ++i) {
+      const double u = k < 8 ? (k >> i & 1U) : std::uniform_real_distribution<double>(0, 1)(random);
+      pose.push_back(std::lerp(box[i][0], box[i][1], i < 3 ? u : 0));
+    }
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+TEST(Cables, CertifiedBoxesOfSixFreedomsAgreeWithTheirPoses) {
+  const auto cogiro = read(cable_text("cogiro"));
+  const std::vector<double> design = nominal_design(cogiro->info());
+  WorkspacePlan plan;
+  plan.limits = no_limits(cogiro->info());
+  const auto certify = [&](const std::vector<std::array<double, 2>>& box, std::size_t boxes) {
+    return cogiro->bounds()->solid(design, plan, "", {.ranges = box}, {.max_boxes = boxes});
+  };
+  const std::array<double, 2> level = {0, 0};
+  const auto cube = [&](double x, double y, double z) {
+    return certify({{x - 0.1, x + 0.1}, {y - 0.1, y + 0.1}, {z - 0.1, z + 0.1}, level, level, level}, 300);
+  };
+  EXPECT_EQ(cube(0, 0, 2).feasible.kind, PropertyResult::Kind::holds);
+  EXPECT_EQ(cube(2, -1.5, 1).feasible.kind, PropertyResult::Kind::holds);
+  EXPECT_EQ(cube(6.5, 4.5, 1).feasible.kind, PropertyResult::Kind::fails);
+  // results of single boxes
+  std::mt19937 random(3);
+  const auto number = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
+  std::vector<std::vector<double>> poses;  // of the boxes that are proven to be feasible
+  for (int trial = 0; trial < 25; ++trial) {
+    std::vector<std::array<double, 2>> box;
+    for (const auto& [from, to] : {std::array{-5.0, 5.0}, {-4.0, 4.0}, {0.0, 4.0}}) {
+      const double centre = number(from, to), half = number(0, 0.15);
+      box.push_back({centre - half, centre + half});
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const double angle = number(-0.2, 0.2);
+      box.push_back({angle, angle});
+    }
+    if (certify(box, 1).feasible.kind != PropertyResult::Kind::holds) continue;
+    const auto samples = poses_in(box, random);
+    poses.insert(poses.end(), samples.begin(), samples.end());
+  }
+  EXPECT_GT(poses.size(), 6 * 24u);
+  for (const double margin : margins_at(*cogiro, poses)) EXPECT_GE(margin, 0);
+}
+
 TEST(Cables, Messages) {
   const std::string text = kPointMass;
   const auto message = [](const std::string& wrong) -> std::string {
