@@ -212,7 +212,12 @@ std::vector<TableVariant> drives() {
                 {leg_section_key(),
                  formulas_key("tension", "N", 2,
                               "range [minimum, maximum] of the tension: the leg is a straight, massless cable, which "
-                              "only pulls")}})},
+                              "only pulls"),
+                 formula_key("pulley_radius", "m",
+                             "radius of the pulley over which a cable leaves the base at `base`; default: no pulley"),
+                 formulas_key("pulley_axis", "1", 3,
+                              "direction in which the cable reaches the pulley at `base`, about which the pulley "
+                              "swivels; default: z of the base")}})},
           {"slider", "slide on a rail, alone or with a rod or two links",
            all({geometry_keys(),
                 mass_keys("slider"),

@@ -98,7 +98,7 @@ class ConstraintSystem {
     if (limb.begin_on != kBaseFrame || limb.end_on != kPlatformFrame)
       throw NoConstraints{"limb " + limb.name + " does not connect the base with the platform"};
     const Vector3 &A = limb.points.at("A"), &B = limb.points.at("B");
-    const Vector3 rod = B - (limb.drive == "telescope" ? A : limb.points.at("C"));
+    const Vector3 rod = B - limb.points.at("C");
     if (limb.revolute) return add_parallel_revolutes(limb, B);
     if (limb.beside) return add_couple(unit_vector(cross(*limb.beside, rod)));
     if (limb.universal) add_universal(limb, B - A, rod);

@@ -107,6 +107,8 @@ struct NamedLimb {
 
   /// Minimum and maximum tension [N] of a cable; std::nullopt: the limb is no cable.
   std::optional<std::array<limbs::Term, 2>> tension = {};
+  /// Radius of the pulley over which a cable leaves the base; std::nullopt: it leaves the base at the point A.
+  std::optional<limbs::Term> pulley_radius = {};
   std::optional<limbs::Term> play = {};  ///< radial play of each passive joint [m]; std::nullopt: not given
   /// Stiffnesses of a round tube: axial E A [N], bending E I and torsional G J [N m^2]; and the area A of its
   /// cross-section [m^2].

@@ -169,7 +169,9 @@ void add_reach_of_cables(const std::vector<LoadSet>& loads, bool closure, Mechan
       for (std::size_t k = 0; k < 3; ++k)
         is_translation = is_translation &&
                          model.term(expression::derivative(model.graph, v[k].node(), coordinate)).is(k == axis ? 1 : 0);
-      const std::array<Term, 2> ends = {none - v[axis], v[axis]};
+      std::array<Term, 2> ends = {none - v[axis], v[axis]};
+      if (limb.pulley_radius)  // the cable leaves the pulley at a distance of at most 2 radius from A
+        for (Term& end : ends) end = end + *limb.pulley_radius * 2.0;
       farthest = farthest ? std::array{greater((*farthest)[0], ends[0]), greater((*farthest)[1], ends[1])} : ends;
     }
     if (!is_translation) continue;
@@ -189,6 +191,8 @@ void add_reach_of_cables(const std::vector<LoadSet>& loads, bool closure, Mechan
 void read_tension(const ConfigValue& table, NamedLimb& limb, MechanismDraft& draft) {
   const auto tension = table.find("tension");
   if (!tension) return;
+  if (const auto radius = table.find("pulley_radius"))
+    limb.pulley_radius = draft.scope.positive(*radius, "m", limb.group);
   limb.tension = read_range(*tension, "N", limb.group, draft);
   const auto& [from, to] = *limb.tension;
   draft.model.required.push_back({limb.name + ": minimum tension", "N", from.node()});

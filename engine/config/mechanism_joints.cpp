@@ -197,6 +197,9 @@ class JointReader {
     if (limb.begin_on != kBaseFrame && limb.drive == "slider")
       throw IncompleteDescription{"the rail of limb " + limb.name + " moves with " + limb.begin_on +
                                   ", but joint forces are computed only for rails that are fixed to the base"};
+    if (limb.pulley_radius)
+      throw IncompleteDescription{"limb " + limb.name +
+                                  " is a cable over a pulley, whose joints have no fixed place on the base"};
     const std::optional<std::size_t> carrier = find_solid(limb.end_on),
                                      base = limb.begin_on == kBaseFrame ? std::nullopt : find_solid(limb.begin_on);
     if (!carrier)

@@ -68,6 +68,20 @@ DrivenLimb crank(const LimbCopy& copy, const Ends& at, const Term& q) {
           max_distance};
 }
 
+DrivenLimb cable_over_pulley(const LimbCopy& copy, const Ends& at, const Term& q) {
+  const ConfigValue radius = copy.table.at("pulley_radius", "the radius of the pulley");
+  if (!copy.table.has("tension")) throw radius.refusal("a pulley requires a cable, i.e. a limb with `tension`");
+  for (const std::string key : {"across", "universal", "leg_section", "cylinder_mass", "piston_mass"})
+    if (const auto other = copy.table.find(key))
+      throw other->refusal("a cable over a pulley has no `" + key + "`; remove it or `pulley_radius`");
+  const auto axis = copy.table.find("pulley_axis");
+  const Term zero(q.graph(), 0.0), one(q.graph(), 1.0);
+  const Vector3 e = axis ? copy.direction(*axis) : copy.base.at.rotation * (copy.turn * Vector3(zero, zero, one));
+  return {limbs::cable_over_pulley(at, e, copy.draft.scope.positive(radius, "m", copy.name), q),
+          "q = sqrt(u^2 + w^2 - r^2) + r (pi - atan2(w, u) - atan2(sqrt(u^2 + w^2 - r^2), r))",
+          {}};
+}
+
 }  // namespace
 
 Term limb_branch(const LimbCopy& copy) {
@@ -82,6 +96,7 @@ Term limb_branch(const LimbCopy& copy) {
 DrivenLimb read_drive(const LimbCopy& copy, const Ends& at, const Term& q) {
   if (copy.drive == "slider") return slider(copy, at, q);
   if (copy.drive == "crank") return crank(copy, at, q);
+  if (copy.table.has("pulley_radius") || copy.table.has("pulley_axis")) return cable_over_pulley(copy, at, q);
   return {limbs::telescope(at, q), "q = |B - A|", {}};
 }
 

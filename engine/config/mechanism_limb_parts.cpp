@@ -21,9 +21,10 @@ std::vector<std::string> parts_of_limb(const ConfigValue& table, const std::stri
 
 std::vector<LimbPart> read_parts(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
   if (copy.drive == "telescope") {
-    const Vector3 v = at.B - at.A, line = (at.across ? v - *at.across * dot(v, *at.across) : v) / limb.joint;
-    return {{.name = "cylinder", .from = at.A, .to = at.B, .line = line},
-            {.name = "piston", .from = at.A, .to = at.B, .line = line}};
+    const Vector3 v = at.B - limb.C, leg = at.across ? v - *at.across * dot(v, *at.across) : v;
+    const Vector3 line = leg / limbs::length(leg);
+    return {{.name = "cylinder", .from = limb.C, .to = at.B, .line = line},
+            {.name = "piston", .from = limb.C, .to = at.B, .line = line}};
   }
   const bool is_crank = copy.drive == "crank";
   std::vector<LimbPart> list;

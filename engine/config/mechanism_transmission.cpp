@@ -34,7 +34,7 @@ LimbForce single_force_of(const NamedLimb& limb) {
   const Vector3 &A = limb.points.at("A"), &B = limb.points.at("B"), &C = limb.points.at("C");
   const Term one(B[0].graph(), 1.0);
   if (limb.drive == "slider" && !limb.has_rod) return {unit(*limb.axis), one, B};
-  Vector3 rod = B - (limb.drive == "telescope" ? A : C);
+  Vector3 rod = B - C;
   // The limb has revolute joints with parallel axes and cannot transmit a force along these axes, so that its force is
   // normal to them.
   if (limb.revolute) {

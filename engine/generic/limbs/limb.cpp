@@ -22,6 +22,23 @@ Limb telescope(const Ends& ends, const Term& q) {
   return {.joint = length(v), .constraints = {}, .closure = rod_closure(v, q), .C = ends.A, .S = ends.A};
 }
 
+Limb cable_over_pulley(const Ends& ends, const Vector3& e, const Term& radius, const Term& q) {
+  const Vector3 v = ends.B - ends.A;
+  const Term w = dot(v, e);
+  const Vector3 normal = v - e * w;
+  const Term distance = length(normal), u = distance - radius, square = u * u + w * w;
+  const Term free = sqrt(square - radius * radius);
+  const Term joint = free + radius * (Term(q.graph(), kPi) - atan2(w, u) - atan2(free, radius));
+  // n is the unit vector from the pulley's centre to the point at which the cable leaves it.
+  const Vector3 across = normal / distance, centre = ends.A + across * radius;
+  const Vector3 n = across * ((radius * u - free * w) / square) + e * ((free * u + radius * w) / square);
+  return {.joint = joint,
+          .constraints = {{"is outside of the pulley", "m", sqrt(square) - radius}},
+          .closure = joint - q,
+          .C = centre + n * radius,
+          .S = ends.A};
+}
+
 Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q) {
   const Vector3 v = projected(ends);
   const Term s = dot(v, e);

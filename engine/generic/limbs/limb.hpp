@@ -73,7 +73,8 @@ struct Limb {
   /// Residual of the loop-closure equation, closure = 0. With Jq = -d closure/dq and G = d closure/dX, the velocities
   /// satisfy Jq qdot = G Xdot.
   Term closure;
-  Vector3 C;  ///< inner end of the rod: end of the crank, elbow or slide; A for a telescope
+  Vector3 C;  ///< inner end of the rod: end of the crank, elbow or slide; A for a telescope; the point at which a cable
+              ///< leaves its pulley
   Vector3 S;  ///< position of the slide; A for cranks and telescopes
   std::optional<CrankRange> crank_range{};
   std::optional<Arm> arm{};
@@ -95,8 +96,14 @@ struct Ends {
 
 /// Telescope: q = |v|, where v is the vector from the joint on the base to that on the platform.
 Limb telescope(const Ends& ends, const Term& q);
-/// Slide and rod: q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), where s = v . e and v is the vector from the joint on the
-/// base to that on the platform.
+/// Cable over a pulley (Pott, "Cable-Driven Parallel Robots", Springer, 2018, section 7.1): q = free + radius wrap. The
+/// cable reaches the pulley at A in the direction e. The pulley swivels about the line through A along e until B is in
+/// its plane. In this plane, u and w are the components of B - M normal to e and along e, where M is the pulley's
+/// centre, free = sqrt(u^2 + w^2 - radius^2) is the length of the cable from the pulley to B, and wrap = pi - atan2(w,
+/// u) - atan2(free, radius) is the angle of the arc.
+/// @param e  unit vector
+Limb cable_over_pulley(const Ends& ends, const Vector3& e, const Term& radius, const Term& q);
+/// Slide and rod: q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), where s = v . e.
 /// @param e  unit vector along the rail
 Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q);
 /// Slide without a rod: q = v . e, where v is the vector from the joint on the base to that on the platform, which

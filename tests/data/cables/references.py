@@ -6,13 +6,14 @@
 CoGiRo: dimensions of Gagliardini, Caro, Gouttefarde et al. and Lamaury, Gouttefarde (T-RO 31(2), 2015, 501-510).
 IPAnema 1: Pott et al. 2013. Straight massless cables: W t + w = 0, where the columns of W are (u; R b x u). The reserve
 of a pose is the largest s with W t + w = 0 and t_min + s <= t <= t_max - s, a linear program (scipy.optimize.linprog,
-HiGHS). The poses are the additive recurrence frac(1/2 + k g^-i), i = 1 to 6, g^7 = g + 1, k = 1, 2, .., in a box.
+HiGHS). Cables over pulleys: Pott, "Cable-Driven Parallel Robots", Springer, 2018. The poses are the additive recurrence
+frac(1/2 + k g^-i), i = 1 to 6, g^7 = g + 1, k = 1, 2, .., in a box.
 """
 import itertools
 import json
 
 import numpy as np
-from scipy.optimize import linprog, minimize
+from scipy.optimize import brentq, linprog, minimize
 
 GRAVITY = 9.81
 ROBOTS = {
@@ -47,6 +48,49 @@ def structure(robot, pose):
     u = cables / lengths[:, None]
     weight = np.array([0, 0, -robot["mass"] * GRAVITY])
     return lengths, np.vstack([u.T, np.cross(b, u).T]), np.concatenate([weight, np.cross(R @ robot["centre"], weight)])
+
+
+def over_pulley(anchor, axis, radius, B):
+    """Length of a cable from its anchor over a pulley to B, and the unit vector of its free part towards the pulley:
+    the root of the condition that the free part is tangential to the pulley, found numerically."""
+    e, v = np.array(axis, float), np.array(B) - anchor
+    across = v - e * (e @ v)
+    across /= np.linalg.norm(across)
+    centre = anchor + radius * across
+    radial = lambda wrap: -np.cos(wrap) * across + np.sin(wrap) * e
+    tangent = lambda wrap: np.sin(wrap) * across + np.cos(wrap) * e
+    gap = lambda wrap: (B - centre) @ radial(wrap) - radius
+    grid = np.linspace(0, 2 * np.pi, 400)
+    for a, b in itertools.pairwise(grid):
+        if gap(a) * gap(b) > 0:
+            continue
+        wrap = brentq(gap, a, b, xtol=1e-15, rtol=1e-15)
+        free = (B - centre) @ tangent(wrap)
+        if free > 0:
+            return radius * wrap + free, free, -tangent(wrap)
+
+
+def pulleys(robot):
+    """IPAnema 1 with pulleys at all anchors, to which the cables come from below at the top, from above at the bottom."""
+    out = {"radius": .05, "poses": [[.5, .3, 1.2, .05, -.1, .02], [-1.2, -.9, .4, -.1, .05, .3], [0, 0, 1, 0, 0, 0]],
+           "lengths": [], "free": [], "jacobian": [], "reserve": []}
+    for pose in out["poses"]:
+        R, p = rotation(*pose[3:]), np.array(pose[:3])
+        b = np.array(robot["platform"]) @ R.T
+        found = [over_pulley(np.array(A, float), [0, 0, 1 if A[2] > 0 else -1], out["radius"], p + each)
+                 for A, each in zip(robot["anchors"], b)]
+        u = np.array([each for *_, each in found])
+        W = np.vstack([u.T, np.cross(b, u).T])
+        weight = np.array([0, 0, -robot["mass"] * GRAVITY])
+        out["lengths"].append([length for length, *_ in found])
+        out["free"].append([free for _, free, _ in found])
+        # the platform's twist for unit rates of the coordinates
+        twists = np.eye(6)
+        twists[3:, 3:] = np.array([[1, 0, 0], rotation(pose[3], 0, 0)[:, 1], R[:, 2]]).T
+        out["jacobian"].append((-W.T @ twists).tolist())
+        out["reserve"].append(reserve(W, np.concatenate([weight, np.cross(R @ robot["centre"], weight)]),
+                                      robot["tension"]))
+    return out
 
 
 def reserve(W, w, tension):
@@ -130,6 +174,7 @@ def main():
     _, W, w = structure(ipanema, [.5, .3, 1.2, .05, -.1, .02])
     out["ipanema"]["tensions"] = tensions(W, w, ipanema["tension"])
     out["ipanema"]["reserve"] = reserve(W, w, ipanema["tension"])
+    out["pulleys"] = pulleys(ipanema)
     print(json.dumps(out))
 
 

@@ -332,6 +332,67 @@ TEST(Cables, CertifiedBoxesOfSixFreedomsAgreeWithTheirPoses) {
   for (const double margin : margins_at(*cogiro, poses)) EXPECT_GE(margin, 0);
 }
 
+/// IPAnema 1 with a pulley at each anchor.
+std::string pulleys_text() {
+  const std::string text = replaced(cable_text("ipanema"), "radius  = \"2 mm\"", "pulley_radius = \"50 mm\"");
+  const std::size_t limb = text.find("[[limb]]");
+  const std::string upper = text.substr(limb, text.find("  { base = [\"-W\", \"D\", 0]") - limb) + "]\n";
+  const std::string below = "name = \"lower\"\npulley_axis = [0, 0, -1]";
+  return text.substr(0, limb) + upper + replaced(replaced(upper, "\"H\"", "0"), "name    = \"cable\"", below);
+}
+
+TEST(Cables, PulleysAgreeWithTangentsFoundNumerically) {
+  const nlohmann::json expected = references()["pulleys"];
+  std::string text = pulleys_text();
+  for (std::size_t i = 0; i < 8; ++i) {
+    const std::string cable = (i < 4 ? "cable" : "lower") + std::to_string(i % 4 + 1);
+    text += "[[quantity]]\nname = \"free_" + std::to_string(i) +
+            "\"\nunit = \"m\"\nmeaning = \"free length\"\nformula = \"norm(" + cable + ".B - " + cable + ".C)\"\n";
+  }
+  const auto robot = read(text);
+  const std::vector<double> design = nominal_design(robot->info());
+  const auto at = [&](const std::vector<double>& pose) {
+    return robot->inspect(design, pose_at(pose), "", no_limits(robot->info()));
+  };
+  for (std::size_t k = 0; k < expected["poses"].size(); ++k) {
+    const std::vector<double> pose = expected["poses"][k];
+    const PoseReport report = at(pose);
+    for (std::size_t i = 0; i < 8; ++i) {
+      EXPECT_NEAR((*report.joints)[i], double(expected["lengths"][k][i]), 1e-12) << k << i;
+      EXPECT_NEAR(value_in(report, robot->info(), "free_" + std::to_string(i)), double(expected["free"][k][i]), 1e-12);
+    }
+    for (std::size_t j = 0; j < 6; ++j) {
+      std::vector<double> before = pose, after = pose;
+      before[j] -= 1e-5;
+      after[j] += 1e-5;
+      const PoseReport from = at(before), to = at(after);
+      for (std::size_t i = 0; i < 8; ++i) {
+        EXPECT_NEAR((*report.J)(i, j), double(expected["jacobian"][k][i][j]), 1e-9);
+        EXPECT_NEAR((*report.J)(i, j), ((*to.joints)[i] - (*from.joints)[i]) / 2e-5, 1e-9);
+      }
+    }
+    EXPECT_NEAR(value_in(report, robot->info(), "tension_reserve"), double(expected["reserve"][k]), 1e-6);
+  }
+}
+
+TEST(Cables, SmallPulleysApproachPoints) {
+  const auto points = read(cable_text("ipanema")),
+             pulleys = read(replaced(pulleys_text(), "pulley_radius = \"50 mm\"", "pulley_radius = 1e-9"));
+  const std::vector<double> design = nominal_design(points->info()), pose = {.5, .3, 1.2, .05, -.1, .02};
+  EXPECT_NEAR(value_at(*pulleys, design, pose, "tension_reserve"), value_at(*points, design, pose, "tension_reserve"),
+              1e-5);
+}
+
+TEST(Cables, PosesInsideOfAPulleyAreInfeasible) {
+  const auto robot = read(replaced(kPointMass, "tension =", "pulley_radius = \"100 mm\"\ntension ="));
+  const std::vector<double> design = nominal_design(robot->info());
+  const PoseReport report = robot->inspect(design, pose_at({0.9, 0, 0.01}), "", no_limits(robot->info()));
+  EXPECT_FALSE(report.feasible);
+  EXPECT_THAT(report.reason, HasSubstr("cable1"));
+  EXPECT_EQ(robot->reactions(), nullptr);
+  EXPECT_THAT(robot->why_no_reactions(), HasSubstr("pulley"));
+}
+
 TEST(Cables, Messages) {
   const std::string text = kPointMass;
   const auto message = [](const std::string& wrong) -> std::string {
@@ -345,6 +406,13 @@ TEST(Cables, Messages) {
   EXPECT_THAT(message(replaced(text, "number = 3", "number = 2")), HasSubstr("2 joints for 3 coordinates"));
   EXPECT_THAT(message(replaced(text, "[0, \"t_max\"]", "[\"200 N\", \"t_max\"]")), HasSubstr("tension"));
   EXPECT_THAT(message(text + "[forces]\ndistribution = \"centre\"\n"), HasSubstr("not redundant"));
+  const auto with = [&](const std::string& keys) { return message(replaced(text, "tension =", keys + "\ntension =")); };
+  EXPECT_THAT(with("pulley_axis = [0, 0, 1]"), HasSubstr("pulley_radius"));
+  EXPECT_THAT(with("pulley_radius = -1"), HasSubstr("pulley_radius"));
+  EXPECT_THAT(with("pulley_radius = \"50 mm\"\nleg_section = { outer = \"4 mm\", young = 1e11 }"),
+              HasSubstr("leg_section"));
+  EXPECT_THAT(message(replaced(text, "tension = [0, \"t_max\"]", "pulley_radius = \"50 mm\"")),
+              HasSubstr("requires a cable"));
   EXPECT_THAT(message(text + "[forces]\npayload_at = [0, 0, 0]\n"), HasSubstr("`payload_at` requires `payload`"));
   EXPECT_THAT(message(text + "[forces]\nforce = [1, 2]\n"), HasSubstr("force"));
   EXPECT_THAT(message(text + "[forces]\nacceleration = { w = 1 }\n"), HasSubstr("one of x, y, z"));
