@@ -152,8 +152,9 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
     (has ? can : cannot).push_back({what, has ? how : why});
   };
   tell(mechanism.voxels(), "workspace by voxels", "one to three coordinates swept", "");
-  tell(mechanism.columns(), "exact workspace by columns",
-       "workspace.method = \"columns\", with derivatives by all parameters", mechanism.why_no_columns());
+  const std::string no_columns = why_no_columns(mechanism);
+  tell(mechanism.columns() && no_columns.empty(), "exact workspace by columns",
+       "workspace.method = \"columns\", with derivatives by all parameters", no_columns);
   tell(mechanism.bounds(), "certified bounds of the workspace", "pkmopt certify, by interval arithmetic", "");
   const Unsupported undefined = why_no_conditioning(mechanism.info());
   tell(!undefined, "conditioning", "", undefined.value_or(""));
@@ -173,12 +174,18 @@ void write_abilities(std::ostream& out, const Mechanism& mechanism, bool keeps_l
   const bool is_redundant = !no_forces && no_coupling;
   if (!is_redundant) {
     tell(!no_forces, "forces and coupling", no_forces ? "" : why_no_masses(mechanism), no_forces.value_or(""));
+    tell(mechanism.reactions(), "forces in the joints", "pkmopt dynamics and trajectory --reactions",
+         mechanism.why_no_reactions());
   } else {
     tell(true, "forces of the drives", why_no_masses(mechanism), "");
-    tell(false, "inertia and coupling of the joints", "", *no_coupling);
+    const std::string counts = "there are " + std::to_string(mechanism.info().joints.size()) + " joints for " +
+                               std::to_string(mechanism.info().coordinates.size()) + " coordinates, so that ";
+    tell(false, "inertia and coupling of the joints", "",
+         counts + "the joints do not move independently; the inertia M_X of the platform is defined");
+    tell(false, "drive trains, and limits of forces in fastest motions", "",
+         counts + "the motion alone does not determine the force of each drive");
+    tell(false, "forces in the joints", "", counts + "they depend on how the drives share the load");
   }
-  tell(mechanism.reactions() && !is_redundant, "forces in the joints", "pkmopt dynamics and trajectory --reactions",
-       is_redundant ? *no_coupling : mechanism.why_no_reactions());
   out << format_titled_table("available", can);
   out << format_titled_table("not available, and why", cannot);
 }

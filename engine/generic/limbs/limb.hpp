@@ -103,7 +103,8 @@ Limb telescope(const Ends& ends, const Term& q);
 /// u) - atan2(free, radius) is the angle of the arc.
 /// @param e  unit vector
 Limb cable_over_pulley(const Ends& ends, const Vector3& e, const Term& radius, const Term& q);
-/// Slide and rod: q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), where s = v . e.
+/// Slide and rod: q = s + branch sqrt(rod^2 - (|v|^2 - s^2)), where s = v . e and v is the vector from the joint on the
+/// base to that on the platform.
 /// @param e  unit vector along the rail
 Limb slider_and_rod(const Ends& ends, const Vector3& e, const Term& rod, const Term& branch, const Term& q);
 /// Slide without a rod: q = v . e, where v is the vector from the joint on the base to that on the platform, which
