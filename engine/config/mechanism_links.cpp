@@ -1,6 +1,8 @@
 // Reads the tables [[link]], which define links in addition to those of the limbs, and adds the limit on the clearance
 // of all links.
 
+#include <algorithm>
+
 #include "engine/config/mechanism_draft.hpp"
 #include "engine/config/tables.hpp"
 #include "engine/core/catalogue.hpp"
@@ -17,9 +19,11 @@ std::vector<LimbPart> read_links(const ConfigValue& root, MechanismDraft& draft)
     const Vector3 from = draft.scope.point(table.at("from", "a point"), name),
                   to = draft.scope.point(table.at("to", "a point"), name);
     const Term radius = draft.scope.positive(table.at("radius", "the link's radius"), "m", name, true);
-    std::string part = kFramePart;
-    // `in`: names of the groups of links with which the link is not tested for clearance. `copies`: for each of these
-    // groups that is a limb with copies, the names of its copies.
+    const auto moves = [](const Vector3& end) {
+      return std::ranges::any_of(end, [](const Term& x) { return depends_on_pose(x.graph(), x.node()); });
+    };
+    std::string part = moves(from) || moves(to) ? name : kFramePart;  // without a group
+    // Names of the groups of the link; the name of a limb with copies stands for all its copies.
     std::vector<std::string> in, copies;
     if (const auto group = table.find("group")) {
       constexpr const char* kExpected = "a name or a list of names";
