@@ -54,6 +54,15 @@ OptionSpec branch_key() {
           .meaning = "solution of the limb in the default working mode"};
 }
 
+OptionSpec axes_key() {
+  return {.name = "axes",
+          .kind = OptionKind::list,
+          .meaning = "directions of the axes of its joints, in their order",
+          .parts = {direction_key("", "direction")}};
+}
+
+OptionSpec zero_key() { return direction_key("zero", "direction at which the first revolute joint has the value 0"); }
+
 /// Keys of limbs whose inverse kinematics is in closed form, i.e. of all limbs except those with drive = "formula".
 Keys geometry_keys() {
   static const TableSpec copies = {.meaning = "rotated copies of the limb",
@@ -75,15 +84,17 @@ Keys geometry_keys() {
   const OptionSpec base = point_key("base", "base point A [x, y, z]"),
                    platform = point_key(
                        "platform", "platform's point B [x, y, z] in the platform's frame, or that of `platform_in`");
-  static const TableSpec ends = {.meaning = "end points of one copy", .keys = {required(base), required(platform)}};
+  static const TableSpec own = {.meaning = "end points of one copy, and other keys that only this copy has",
+                                .keys = {required(base), required(platform), axes_key(), zero_key(), branch_key()}};
   return {
       {.name = "copies",
        .kind = OptionKind::any_of,
-       .meaning = "the limb is copied, rotated about an axis or with other end points: arm1, arm2, ..",
+       .meaning = "the limb is copied, rotated about an axis, or with end points, `axes`, `zero` and `branch` of its "
+                  "own: arm1, ..",
        .parts = {table_key("", copies),
                  {.kind = OptionKind::list,
-                  .meaning = "end points of each copy",
-                  .parts = {{.kind = OptionKind::table, .meaning = "end points of one copy", .table = &ends}}}}},
+                  .meaning = "end points of each copy, and its own `axes`, `zero`, `branch`",
+                  .parts = {{.kind = OptionKind::table, .meaning = own.meaning, .table = &own}}}}},
       base,
       platform,
       frames_key("base_in",
@@ -148,13 +159,10 @@ Keys chain_keys() {
        .required = true,
        .meaning = "joints from the base to the platform: P, R, U, S",
        .parts = {{.kind = OptionKind::word, .choices = {"P", "R", "U", "S"}}}},
-      {.name = "axes",
-       .kind = OptionKind::list,
-       .meaning = "directions of the axes of its joints, in their order",
-       .parts = {direction_key("", "direction")}},
+      axes_key(),
       formulas_key("links", "m", 0, "lengths of the links between the joints"),
       formulas_key("angles", "rad", 2, "angles [alpha_1, alpha_2] of the links of a spherical chain"),
-      direction_key("zero", "direction at which the first revolute joint has the value 0"),
+      zero_key(),
       {.name = "driven",
        .kind = OptionKind::integer,
        .lower = 1,

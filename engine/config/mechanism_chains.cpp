@@ -17,8 +17,8 @@ using limbs::Ends, limbs::Term, limbs::Vector3;
 struct ChainForm {
   const char* joints;
   const char* drive;
-  /// For each direction in the chain's list `axes`: the key under which the rewritten limb has this direction; "=":
-  /// none, because the direction has to be parallel to the previous one.
+  /// For each direction that the chain lists under `axes`, the key of the drive that it becomes; "=": none, because the
+  /// direction has to be parallel to the previous one; "": none, because it concerns the forces in the joints alone.
   std::vector<const char*> axes;
   std::vector<const char*> links;  ///< for each length in the chain's list `links`: its key in the rewritten limb
 };
@@ -41,6 +41,8 @@ const std::vector<ChainForm>& chain_forms() {
       {"UPS", "telescope", {}, {}},
       {"SPS", "telescope", {}, {}},
       {"UPU", "telescope", {"universal"}, {}},
+      {"SPR", "telescope", {"across"}, {}},
+      {"UPR", "telescope", {"", "across"}, {}},
   };
   return forms;
 }
@@ -111,23 +113,25 @@ struct Plane {
 Plane plane_of(const LimbCopy& copy, const Ends& at, const DrivenLimb& limb) {
   const Chain& chain = *copy.chain;
   const bool has_links = copy.table.has("links"), slides = chain.drive == "slider";
+  const bool on_platform = chain.is_hinged_at_platform();
   const std::vector<ConfigValue> axes = chain.table.find("axes")->elements("axes");
-  const Vector3 n = copy.direction(axes[slides ? 1 : 0]);
+  const Vector3 n = at.across ? *at.across : copy.direction(axes[1]);
   const auto in_plane = [&n](const Vector3& x) { return x - n * dot(x, n); };
   const ConfigValue zero = slides && !has_links
                                ? axes[0]
                                : chain.table.at("zero",
                                                 "the direction, normal to the axis, at which the first revolute joint "
                                                 "has the value 0, [x, y, z]");
-  Plane plane{n, in_plane(at.B - at.A), {copy.direction(zero)}};
+  Plane plane{n, in_plane(at.B - at.A), {copy.direction(zero, on_platform)}};
   if (std::fabs(copy.draft.scope.at_default(dot(plane.directions[0], n))) > 1e-9)
     throw zero.refusal("`zero` has to be normal to the axis of the revolute joints");
+  if (on_platform) plane.directions.clear();
   if (limb.arm) plane.directions.push_back(limb.arm->arm);
   plane.directions.push_back(in_plane(at.B - (chain.drive == "telescope" ? at.A : limb.C)));
   if (chain.joints.back() != 'R') return plane;
   for (const Vector3& turn : copy.platform.turns.value_or(std::vector<Vector3>())) {
     const Vector3 normal = cross(turn, n);
-    if (copy.draft.scope.at_default(dot(normal, normal)) > 1e-18)
+    if (!on_platform && copy.draft.scope.at_default(dot(normal, normal)) > 1e-18)
       throw chain.table.find("chain")->refusal("the last joint is a revolute joint, but the frame " +
                                                copy.platform.name + " rotates about other axes, too");
   }
@@ -143,7 +147,8 @@ Term closure_of(const LimbCopy& copy, const Plane& plane, const Term& q) {
   const auto number = std::count(chain.joints.begin(), chain.joints.begin() + static_cast<std::ptrdiff_t>(chain.driven),
                                  'R');  // of revolute joints before the driven one
   const auto last_link = [&] { return rotated(plane.directions.back(), n, q * -1.0); };
-  if (chain.drive == "telescope") return dot(v, cross(n, number == 0 ? rotated(zero, n, q) : last_link()));
+  if (chain.drive == "telescope")
+    return dot(v, cross(n, number == 0 && !chain.is_hinged_at_platform() ? rotated(zero, n, q) : last_link()));
   if (chain.drive == "slider" && !copy.table.has("links")) {
     const Vector3 rod = (number == 0 ? rotated(zero, n, q) : last_link()) * copy.length("rod", "the rod's length");
     return dot(v - rod, cross(n, zero));
@@ -201,7 +206,8 @@ ConfigValue rewritten(const Chain& chain, MechanismDraft& draft) {
   TomlValue kept = filtered(table.toml(), [&](const std::string& key) {
     return !contains(names, key) && (is_usual || key != "range") && (chain.drive == "crank" || key != "zero");
   });
-  const bool counts_from_zero = chain.joints == "PRRR" || chain.joints.starts_with("R");
+  const bool counts_from_zero =
+      chain.joints == "PRRR" || chain.joints.starts_with("R") || chain.is_hinged_at_platform();
   if (const auto zero = table.find("zero"); zero && !counts_from_zero)
     throw zero->refusal("`zero` has no effect on the chain " + with_dashes(chain.joints));
   set_key(kept, "drive", text_value(chain.drive, table.find("chain")->toml().line));
@@ -221,11 +227,14 @@ ConfigValue rewritten(const Chain& chain, MechanismDraft& draft) {
       throw axes[i].refusal("the revolute joints of the chain " + with_dashes(chain.joints) +
                             " have to be parallel for a closed form; expected the direction of the axis before");
     if (key == "across" && i > 0 && std::fabs(draft.scope.at_default(dot(directions[i], directions[0]))) > 1e-9)
-      throw axes[i].refusal("the axis of the revolute joint has to be normal to the slide, axes[1]");
-    if (key != "=") set_key(kept, key, moved(axes[i], "axes", i));
+      throw axes[i].refusal("the axis of the revolute joint has to be normal to " +
+                            std::string(chain.is_hinged_at_platform() ? "that of the universal joint" : "the slide") +
+                            ", axes[1]");
+    if (key != "=" && !key.empty()) set_key(kept, key, moved(axes[i], "axes", i));
     if (key == "axis" && count > 1 && form.axes[1] == std::string("="))
       set_key(kept, "across", moved(axes[i], "axes", i));
   }
+  if (chain.is_hinged_at_platform()) set_key(kept, "across_in", text_value("platform", kept.find("across")->line));
   const std::vector<ConfigValue> links =
       elements_of(table, "links", form.links.size(),
                   form.links.empty() ? "the chain " + with_dashes(chain.joints) + " has no link of constant length"
@@ -273,6 +282,15 @@ ChainJoints find_chain_joints(const LimbCopy& copy, const Ends& at, const Term& 
   limb.crank_range.reset();
   limb.form = text + "angle between neighbouring links";
   return joints;
+}
+
+void describe_base_joint(const LimbCopy& copy, NamedLimb& limb) {
+  limb.begins_in_ball = copy.chain->joints == "SPR";
+  if (copy.chain->joints != "UPR") return;
+  const ConfigValue axis = copy.chain->table.find("axes")->elements("axes")[0];
+  limb.swivel = copy.direction(axis);
+  const Term zero = copy.draft.zero();
+  copy.draft.in_planes.push_back({axis, {zero, zero, zero}, *limb.swivel, *limb.revolute, true});
 }
 
 void name_chain_joints(const LimbCopy& copy, const ChainJoints& joints) {

@@ -23,6 +23,8 @@ struct Chain {
   std::size_t usual;   ///< index of the joint that `drive` drives
 
   bool is_spherical() const { return drive == "chain"; }
+  /// Whether the plane of the leg rotates with the platform, on which the only revolute joint of the chain is.
+  bool is_hinged_at_platform() const { return joints == "SPR" || joints == "UPR"; }
   const char* unit(std::size_t joint) const { return joints[joint] == 'P' ? "m" : "rad"; }
 };
 
@@ -40,6 +42,8 @@ using ChainJoints = std::map<std::size_t, limbs::Term>;
 /// @param limb  the closed form for the drive
 /// @param q     coordinate of the driven joint as a variable of the loop-closure equation
 ChainJoints find_chain_joints(const LimbCopy& copy, const limbs::Ends& at, const limbs::Term& q, DrivenLimb& limb);
+/// Describes the joint at the base of the chains S P R and U P R. @param limb  the limb, with its revolute axis
+void describe_base_joint(const LimbCopy& copy, NamedLimb& limb);
 /// Adds the names and ranges of the joints of a chain: "arm1.q2".
 void name_chain_joints(const LimbCopy& copy, const ChainJoints& joints);
 

@@ -104,9 +104,15 @@ class ConstraintSystem {
     if (limb.universal) add_universal(limb, B - A, rod);
   }
   /// Parallel revolute joints transmit the force along their axes, unless a slide is parallel to it, and the couples
-  /// normal to the axes; the last joint rotates with the platform about the platform's axes, too.
+  /// normal to the axes; the last joint rotates with the platform about the platform's axes, too. A spherical or
+  /// universal joint at the base transmits the force through its centre, and the couple normal to both of its axes.
   void add_parallel_revolutes(const NamedLimb& limb, const Vector3& B) {
     const Vector3 n = unit_vector(*limb.revolute);
+    if (limb.is_hinged_at_end()) {
+      add({n, moment_of(n, limb.points.at("A"))});
+      if (limb.swivel) add_couple(unit_vector(cross(*limb.swivel, n)));
+      return;
+    }
     if (!limb.has_links) add({n, moment_of(n, B)});
     if (limb.ends_in_ball) return;
     std::vector<Vector3> free = {n};

@@ -130,6 +130,13 @@ struct NamedLimb {
   std::optional<std::size_t> driven = {};
   /// True: the last joint of a chain of parallel revolute joints is a spherical joint.
   bool ends_in_ball = false;
+  /// True: the limb is a chain S P R, whose first joint is a spherical joint.
+  bool begins_in_ball = false;
+  /// For a chain U P R: first axis of its universal joint, fixed to the base. The second one is `revolute`.
+  std::optional<limbs::Vector3> swivel = {};
+
+  /// Whether the direction `revolute` is fixed to the body at the end of the limb, not to the base.
+  bool is_hinged_at_end() const { return begins_in_ball || swivel; }
 };
 
 /// A limb whose table has the key `across`, a vector `normal` to the plane in which the limb moves. The component of
@@ -137,6 +144,7 @@ struct NamedLimb {
 struct LimbInPlane {
   ConfigValue across;
   limbs::Vector3 A, B, normal;
+  bool is_swivel = false;  ///< the vector is NamedLimb::swivel instead
 };
 
 /// An unknown of a [[solve]].

@@ -10,6 +10,8 @@
 //   a pair of rods        two parallel rods with half the mass each
 //   `links`, `across`     revolute joints with parallel axes: forces, and couples normal to the axis. If the platform
 //                         rotates about other axes, the joint at the platform is free about these, too
+//   a leg S P R, U P R    a revolute joint at the platform, and at the base a ball joint or a universal joint, whose
+//                         second axis is parallel to that of the revolute joint
 //   a leg                 in addition a prismatic joint at its middle: all forces and couples; the drive exerts the
 //                         force along it
 //   a slider on its rail  not a body: the drive force includes the force that accelerates the mass of the slider
@@ -129,6 +131,13 @@ class JointReader {
     axes.insert(axes.end(), also.begin(), also.end());
     return joint(name, point, on, from, all_but_about, axes);
   }
+  /// Makes the joint of a leg with the body on which it begins.
+  JointNodes first_joint(const NamedLimb& limb, const std::string& name, const Vector3& point, std::size_t on,
+                         std::optional<std::size_t> from, const std::optional<Vector3>& line) const {
+    if (limb.begins_in_ball) return joint(name, point, on, from, JointNodes::Couples::along, {});
+    return limb_joint(limb, name, point, on, from, line,
+                      limb.swivel ? std::vector{*limb.swivel} : std::vector<Vector3>());
+  }
   /// Makes the joint of a limb with the body that carries its end.
   JointNodes end_joint(const NamedLimb& limb, const std::string& name, const Vector3& point, std::size_t on,
                        std::optional<std::size_t> from, const std::vector<Vector3>& turns) const {
@@ -209,7 +218,8 @@ class JointReader {
     const auto& points = limb.points;
     const Vector3 &A = points.at("A"), &B = points.at("B"), &C = points.at("C"), &S = points.at("S");
     const LimbPart &first = limb.parts[limb.parts.size() - 2], &last = limb.parts.back();
-    const std::vector<Vector3> turns = limb.ends_in_ball ? std::vector<Vector3>() : turns_of(limb);
+    const bool turns_alone = limb.ends_in_ball || limb.is_hinged_at_end();
+    const std::vector<Vector3> turns = turns_alone ? std::vector<Vector3>() : turns_of(limb);
 
     // A revolute joint of the chain is driven, and its slide is passive. The slide is described as the drive all the
     // same: the mobility does not depend on it, because all drives are free there.
@@ -229,7 +239,7 @@ class JointReader {
     std::optional<std::size_t> inner;
     if (telescope || has_links || limb.drive == "crank") inner = add_part(limb, first);
     if (telescope) {
-      joints_.push_back(limb_joint(limb, limb.name + ".A", A, *inner, base, first.line));
+      joints_.push_back(first_joint(limb, limb.name + ".A", A, *inner, base, first.line));
       make_universal(limb, B - A, *inner, false);
       const std::size_t piston = add_part(limb, last);
       joints_.push_back(rigid_joint(limb.name + ".slide", (A + B) * Term(model_.graph, 0.5), piston, inner));

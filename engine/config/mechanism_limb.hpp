@@ -22,9 +22,8 @@ struct LimbCopy {
   std::string name;                   ///< name of this copy, for example "arm2"
   limbs::Rotation turn;               ///< rotation that maps the geometry in the file to this copy
   const NamedFrame &base, &platform;  ///< frames to which the two ends of the limb are attached
-  /// Table that contains the limb's keys `base` and `platform`: the table of the limb, or an element of its list
-  /// `copies`.
-  ConfigValue ends;
+  ConfigValue ends;  ///< table that contains the limb's keys `base` and `platform`: the table of the limb, or an
+                     ///< element of `copies`, whose other keys are in `table`
   const Chain* chain = nullptr;  ///< the chain of joints of a limb with the key `chain`; null for other limbs
 
   limbs::Term length(const char* key, const char* expected) const;

@@ -103,6 +103,28 @@ std::vector<ConfigValue> ends_of(const ConfigValue& table) {
   return ends;
 }
 
+/// The tables of the copies of a limb: the limb's table, to which the tables of a list of `copies` add their other
+/// keys.
+/// @param ends  result of ends_of()
+std::vector<ConfigValue> tables_of(const ConfigValue& table, const std::vector<ConfigValue>& ends,
+                                   MechanismDraft& draft) {
+  const auto copies = table.find("copies");
+  if (!copies || !copies->is_list()) return {table};
+  std::vector<ConfigValue> tables;
+  for (const ConfigValue& own : ends) {
+    TomlValue both = table.toml();
+    for (const std::string& key : own.keys()) {
+      if (const auto common = table.find(key))
+        throw common->refusal("`" + key + "` is also in a table of `copies`; give it either there or here");
+      if (key != "base" && key != "platform") set_key(both, key, own.find(key)->toml());
+    }
+    const SourceLocation place = table.place();
+    const ConfigValue merged(draft.rewritten.emplace_back(std::move(both)), place.file, place.key);
+    tables.push_back(merged.described_by(limb_keys()));
+  }
+  return tables;
+}
+
 bool on_platform(const ConfigValue& table, const std::string& key) { return table.word_at(key) == "platform"; }
 
 limbs::Ends read_ends(const LimbCopy& copy) {
@@ -201,6 +223,7 @@ NamedLimb named(const LimbCopy& copy, const limbs::Ends& at, const DrivenLimb& d
                  .has_links = table.has("links")};
   if (copy.chain && copy.chain->driven != copy.chain->usual) limb.driven = copy.chain->driven;
   limb.ends_in_ball = copy.chain && limb.revolute && copy.chain->joints.back() == 'S';
+  if (copy.chain) describe_base_joint(copy, limb);
   const auto end_on = table.find("end_on");
   if (end_on && !table.has("end"))
     throw end_on->refusal("`end_on` requires `end`; a limb that ends at `platform` is attached to the platform");
@@ -294,36 +317,38 @@ void read_copy(const LimbCopy& copy, const std::string& number) {
 }
 
 void read_limb(const ConfigValue& value, MechanismDraft& draft) {
-  ConfigValue table = limb_table(value);
+  const ConfigValue table = limb_table(value);
   const std::string name = table.at("name", "the limb's name").text("the limb's name");
-  std::string drive = table.at("drive").word();
+  const std::string drive = table.at("drive").word();
   refuse_known(table, name, draft);
   if (drive == "formula")
     return read_as_limb(
         name, [&] { read_formula_limb(table, name, draft); }, draft);
-  std::optional<Chain> chain;
-  if (drive == "chain") {
-    chain = read_chain(table);
-    drive = chain->drive;
-    if (!chain->is_spherical()) table = rewritten(*chain, draft);
-  }
   const std::vector<Rotation> turns = turns_of(table, draft);
   const std::vector<ConfigValue> ends = ends_of(table);
+  std::vector<ConfigValue> tables = tables_of(table, ends, draft);
+  std::vector<Chain> chains;
+  if (drive == "chain")
+    for (ConfigValue& each : tables) {
+      chains.push_back(read_chain(each));
+      if (!chains.back().is_spherical()) each = rewritten(chains.back(), draft);
+    }
   const std::size_t copies = ends.size() * turns.size();
   const auto base = frames_of(table, "base_in", kBaseFrame, copies, draft),
              platform = frames_of(table, "platform_in", kPlatformFrame, copies, draft);
   for (std::size_t i = 0; i < copies; ++i) {
     const std::string number = table.has("copies") ? std::to_string(i + 1) : "";
-    const LimbCopy copy{table,
+    const std::size_t k = i / turns.size();
+    const LimbCopy copy{tables[k],
                         draft,
-                        drive,
+                        chains.empty() ? drive : chains[k].drive,
                         name,
                         name + number,
                         turns[i % turns.size()],
                         *base[i],
                         *platform[i],
-                        ends[i / turns.size()],
-                        chain ? &*chain : nullptr};
+                        ends[k],
+                        chains.empty() ? nullptr : &chains[k]};
     read_as_limb(
         copy.name, [&] { read_copy(copy, number); }, draft);
   }

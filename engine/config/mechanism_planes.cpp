@@ -103,14 +103,20 @@ void refuse_changing_planes(MechanismDraft& draft) {
         sizes[i].add(std::sqrt(values[2 * i + 1]));
       }
     }
-    for (std::size_t i = 0; i < offsets.size(); ++i)
-      if (offsets[i].greatest - offsets[i].least > kConstant * sizes[i].greatest)
-        throw draft.in_planes[i].across.refusal(
-            "the component of B - A along `across` changes with the pose (" + length_text(offsets[i].least) + " to " +
-            length_text(offsets[i].greatest) + (design == 0 ? "" : " for a design other than the default") +
-            "), so the limb cannot stay in the plane normal to `across`; give formulas in `follows`, `origin` or `end` "
-            "that keep it in this plane, omit `across` if the rod ends in ball joints, or put `end` into the plane if "
-            "a joint slides along `across`");
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+      if (offsets[i].greatest - offsets[i].least <= kConstant * sizes[i].greatest) continue;
+      const LimbInPlane& limb = draft.in_planes[i];
+      if (limb.is_swivel)
+        throw limb.across.refusal(
+            "this axis of the universal joint does not stay normal to that of the revolute joint at the platform; give "
+            "formulas in `follows` or `origin` that keep it normal");
+      throw limb.across.refusal(
+          "the component of B - A along `across` changes with the pose (" + length_text(offsets[i].least) + " to " +
+          length_text(offsets[i].greatest) + (design == 0 ? "" : " for a design other than the default") +
+          "), so the limb cannot stay in the plane normal to `across`; give formulas in `follows`, `origin` or `end` "
+          "that keep it in this plane, omit `across` if the rod ends in ball joints, or put `end` into the plane if a "
+          "joint slides along `across`");
+    }
   }
 }
 

@@ -22,8 +22,9 @@ def vector(*elements):
     return np.array(elements, dtype=REAL)
 
 
-def difference(f, h=STEP):
+def difference(f):
     """Derivative of f at 0."""
+    h = STEP
     return sum(w * (f(k * h) - f(-k * h)) for k, w in ((1, 45), (2, -9), (3, 1))) / (60 * h)
 
 

@@ -469,7 +469,7 @@ TEST(Chains, AreRefusedWithReasons) {
       with("\"R\", \"R\", \"R\"", "\"R\", \"R\", \"P\""),
       HasSubstr("robot.toml:18: limb[1].chain: no closed form of the chain R-R-P is known; expected one of R-R-R, "
                 "R-R-S, R-U-S, R-S-S, R-U-U, P-R-R, P-R-R-R, P-R-S, P-U-S, P-S-S, P-U-U, R-P-R, R-P-S, U-P-S, S-P-S, "
-                "U-P-U, and R-R-R with `angles`, a spherical chain; otherwise give the joints by drive = "
+                "U-P-U, S-P-R, U-P-R, and R-R-R with `angles`, a spherical chain; otherwise give the joints by drive = "
                 "\"formula\""));
   EXPECT_THAT(with("\"R\", \"R\", \"R\"", "\"R\", \"R\", \"R\", \"R\""), HasSubstr("of the chain R-R-R-R is known"));
   EXPECT_THAT(with("\"R\", \"R\", \"R\"", "\"R\", \"Q\", \"R\""),

@@ -61,8 +61,9 @@ std::optional<Box> extent_of(const VoxelMap& map) {
 }
 
 TEST(ContractedBox, ContainsTheWorkspaceAndIsHardlyLarger) {
-  // Cables without limits of their lengths hang down as far as one likes.
-  const std::vector<std::string> unbounded = {"cogiro", "ipanema", "eight-cables"};
+  // Cables without limits of their lengths hang down as far as one likes; the planes of the Exechon's legs rotate with
+  // the platform, so that intervals do not decide their lengths.
+  const std::vector<std::string> unbounded = {"cogiro", "ipanema", "eight-cables", "exechon"};
   // Intervals do not decide the twist of the platform of the 3-PRS in a full rotation, and few poses of the
   // parallelograms of H4 and Par4 near the axes of their cranks.
   const std::vector<std::string> loose = {"3-prs", "3-prs-solved", "h4", "par4"};
