@@ -91,7 +91,7 @@ TEST_P(InfluenceContract, AreAbsentOutOfReach) {
   EXPECT_FALSE(mechanism().velocities()->influence(parameters(), test::unreachable_pose(info()), info().modes[0]));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, InfluenceContract, testing::ValuesIn(test::mechanisms_and_files()),
+INSTANTIATE_TEST_SUITE_P(All, InfluenceContract, testing::ValuesIn(test::mechanisms_and_all_files()),
                          [](const auto& name) { return test::test_name(name.param); });
 
 }  // namespace

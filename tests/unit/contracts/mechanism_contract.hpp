@@ -1,5 +1,5 @@
-// Fixture of the suite MechanismContract: a mechanism of the catalogue, of tests/own_mechanisms or from a file, with
-// poses inside and outside its workspace.
+// Fixture of the suites MechanismContract and WorkspaceAnalysisContract: a mechanism of the catalogue, of
+// tests/own_mechanisms or from a file, with poses inside and outside its workspace.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -52,7 +52,15 @@ inline std::vector<std::string> mechanisms_and_files() {
   return names;
 }
 
-/// The mechanism with a name of mechanisms_and_files(). Files are read once.
+/// The same and the files in the folders of experiments/mechanisms, for suites that take little time.
+inline std::vector<std::string> mechanisms_and_all_files() {
+  std::vector<std::string> names = mechanisms_and_files();
+  if (contract_files() == mechanism_files())
+    for (const std::string& file : mechanism_files_in_folders()) names.push_back("file-" + file);
+  return names;
+}
+
+/// The mechanism with a name of mechanisms_and_all_files(). Files are read once.
 inline const std::shared_ptr<const Mechanism>& test_mechanism(const std::string& name) {
   static std::map<std::string, std::shared_ptr<const Mechanism>> known = [] {
     std::map<std::string, std::shared_ptr<const Mechanism>> all;
@@ -62,8 +70,10 @@ inline const std::shared_ptr<const Mechanism>& test_mechanism(const std::string&
   auto& mechanism = known[name];
   if (!mechanism) {
     const std::string file = name.substr(name.find('-') + 1);
-    std::string text = text_of_mechanism(file);
-    text.insert(text.find('"') + 1, "file-");  // some files have the name of a mechanism in tests/own_mechanisms
+    std::string text = text_of_mechanism(file), prefix = "file-" + file.substr(0, file.find('/') + 1);
+    std::ranges::replace(prefix, '/', '-');
+    // some files have the name of a mechanism in tests/own_mechanisms, or of one in another folder
+    text.insert(text.find('"', text.find("[mechanism]")) + 1, prefix);
     mechanism = read_mechanism_toml(text, file + ".toml");
   }
   return mechanism;

@@ -15,8 +15,10 @@ namespace {
 
 using test::survey;
 
+class WorkspaceAnalysisContract : public MechanismContract {};
+
 /// The mechanism's own, faster voxel evaluator finds the same cells as the generic one, which tests every cell.
-TEST_P(MechanismContract, VoxelAnalysisEqualsTestingEveryCell) {
+TEST_P(WorkspaceAnalysisContract, VoxelAnalysisEqualsTestingEveryCell) {
   for (const Sweep& sweep : test::sweeps(mechanism())) {
     SCOPED_TRACE(test::words(info(), sweep));
     WorkspacePlan plan = test::voxels(info(), sweep, 11);
@@ -45,7 +47,7 @@ TEST_P(MechanismContract, VoxelAnalysisEqualsTestingEveryCell) {
   }
 }
 
-TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
+TEST_P(WorkspaceAnalysisContract, VoxelsConvergeToTheColumns) {
   if (!mechanism().columns()) GTEST_SKIP() << "no columns";
   for (const Sweep& sweep : test::sweeps(mechanism())) {
     if (!test::has_columns(mechanism(), sweep)) continue;
@@ -63,7 +65,7 @@ TEST_P(MechanismContract, VoxelsConvergeToTheColumns) {
   }
 }
 
-TEST_P(MechanismContract, ColumnsAreClippedByABoxOrRejectIt) {
+TEST_P(WorkspaceAnalysisContract, ColumnsAreClippedByABoxOrRejectIt) {
   if (!mechanism().columns()) GTEST_SKIP() << "no columns";
   for (const Sweep& sweep : test::sweeps(mechanism())) {
     if (!test::has_columns(mechanism(), sweep)) continue;
@@ -89,7 +91,7 @@ TEST_P(MechanismContract, ColumnsAreClippedByABoxOrRejectIt) {
   }
 }
 
-TEST_P(MechanismContract, InactiveLimitsLieInTheirRangeAndDoNotReduceTheWorkspace) {
+TEST_P(WorkspaceAnalysisContract, InactiveLimitsLieInTheirRangeAndDoNotReduceTheWorkspace) {
   for (const Sweep& sweep : test::sweeps(mechanism()))
     for (WorkspacePlan& p : test::plans(mechanism(), sweep, 30)) {
       if (info().limits.empty()) continue;
@@ -107,7 +109,7 @@ TEST_P(MechanismContract, InactiveLimitsLieInTheirRangeAndDoNotReduceTheWorkspac
     }
 }
 
-TEST_P(MechanismContract, InfeasibleLimitsGiveAnEmptyWorkspace) {
+TEST_P(WorkspaceAnalysisContract, InfeasibleLimitsGiveAnEmptyWorkspace) {
   if (info().limits.empty()) GTEST_SKIP() << "no limits";
   for (const Sweep& sweep : test::sweeps(mechanism()))
     for (WorkspacePlan& p : test::plans(mechanism(), sweep, 10)) {
@@ -127,7 +129,7 @@ int length_exponent(const std::string& unit) {
   return unit == "m" || unit.starts_with("m ") ? 1 : 0;
 }
 
-TEST_P(MechanismContract, ScalingAllLengthsScalesTheVolumeByTheExponentOfItsUnit) {
+TEST_P(WorkspaceAnalysisContract, ScalingAllLengthsScalesTheVolumeByTheExponentOfItsUnit) {
   constexpr double kScale = 4;  // a power of two: exact, so that no cell centre changes its side of a limit by rounding
   auto larger = parameters();
   for (std::size_t i = 0; i < larger.size(); ++i)
@@ -147,7 +149,7 @@ TEST_P(MechanismContract, ScalingAllLengthsScalesTheVolumeByTheExponentOfItsUnit
   }
 }
 
-TEST_P(MechanismContract, ExpressionNamesAreDistinctAndHaveTheRightValues) {
+TEST_P(WorkspaceAnalysisContract, ExpressionNamesAreDistinctAndHaveTheRightValues) {
   const auto design = parameters();
   std::set<std::string> distinct;
   const std::vector<AnalysisResult> results = analysis_results(info());
@@ -179,6 +181,9 @@ TEST_P(MechanismContract, ExpressionNamesAreDistinctAndHaveTheRightValues) {
     EXPECT_EQ(expression.value(DesignView<double>{mechanism(), design, &found, scratch}), expected);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(All, WorkspaceAnalysisContract, testing::ValuesIn(test::mechanisms_and_files()),
+                         [](const auto& name) { return test::test_name(name.param); });
 
 }  // namespace
 }  // namespace pkm

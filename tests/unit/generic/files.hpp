@@ -38,6 +38,21 @@ inline std::string text_of_file(const std::string& path) {
   return text.str();
 }
 
+/// "cables/cogiro", ..: names of the mechanism files in the folders of experiments/mechanisms, sorted; without those of
+/// studies.
+inline const std::vector<std::string>& mechanism_files_in_folders() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const std::string folder : {"cables/", "chains/", "frames/"})
+      for (const auto& entry : std::filesystem::directory_iterator(kMechanismFolder + folder))
+        if (text_of_file(entry.path()).find("\n[platform]") != std::string::npos)
+          all.push_back(folder + entry.path().stem().string());
+    std::ranges::sort(all);
+    return all;
+  }();
+  return names;
+}
+
 /// Of a file of experiments/mechanisms, or of the catalogue.
 inline std::string text_of_mechanism(const std::string& name) {
   if (std::ranges::any_of(all_mechanisms(), [&](const MechanismEntry& entry) { return entry.name() == name; }))
