@@ -55,13 +55,11 @@ BatchStage::BatchStage(const Program& program, std::size_t stage, std::span<cons
 }
 
 void solve_batch(const BatchSolve& step, const double* registers, double* rows, std::size_t count) {
-  static thread_local std::vector<double> operands, results;
-  operands.resize(step.from.size());
-  results.resize(step.to.size());
+  std::vector<double> operands(step.from.size()), results(step.to.size()), scratch(step.system->scratch_size());
   for (std::size_t k = 0; k < count; ++k) {
     for (std::size_t i = 0; i < operands.size(); ++i)
       operands[i] = step.from[i].row ? rows[step.from[i].index * kRow + k] : registers[step.from[i].index];
-    step.system->solve(operands, std::span<double>(results));
+    step.system->solve(operands, results, scratch);
     for (std::size_t i = 0; i < results.size(); ++i) rows[step.to[i] * kRow + k] = results[i];
   }
 }

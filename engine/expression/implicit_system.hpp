@@ -28,12 +28,15 @@ class ImplicitSystem {
   std::size_t unknowns() const { return equations_.size(); }
   /// Number of operands: the coefficients, then the start of every unknown.
   std::size_t operands() const { return coefficients_ + unknowns(); }
+  /// Number of numbers that solving the system in double precision needs as scratch memory.
+  std::size_t scratch_size() const;
 
   /// Solves the system. S is double, Dual4, Taylor or Interval; the values of the first three have the same bits.
   /// @param results  receives the status, which is 1 if the system is solved and otherwise -1, and the unknowns, which
-  ///                 are NaN if it is not solved. Intervals: if Krawczyk's test proves nothing, the status is [-1, 1]
-  ///                 and the unknowns are unbounded
-  void solve(std::span<const double> operands, std::span<double> results) const;
+  ///                 are NaN if it is not solved. Intervals: if the test proves nothing, the status is [-1, 1] and the
+  ///                 unknowns are unbounded
+  /// @param scratch  memory with scratch_size() elements
+  void solve(std::span<const double> operands, std::span<double> results, std::span<double> scratch) const;
   void solve(std::span<const Dual4> operands, std::span<Dual4> results) const;
   void solve(std::span<const Taylor> operands, std::span<Taylor> results) const;
   void solve(std::span<const Interval> operands, std::span<Interval> results) const;
@@ -49,6 +52,7 @@ class ImplicitSystem {
   Nodes nodes(Graph& to, std::span<const Node> unknowns, std::span<const Node> operands) const;
 
  private:
+  using Vector = std::array<double, kMaxUnknowns>;
   struct Factors;
   class Newton;
   class Krawczyk;

@@ -48,7 +48,10 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
     }
   }
   for (const Node node : outputs) outputs_.push_back(registers.at(node));
-  registers_ = next;
+  // The registers after those of the nodes are the scratch memory of the systems.
+  std::size_t scratch = 0;
+  for (const auto& solve : systems_) scratch = std::max(scratch, solve->from.size() + solve->system->scratch_size());
+  registers_ = next + scratch;
 }
 
 std::span<const std::uint32_t> Program::Step::operands() const {
@@ -72,10 +75,16 @@ namespace {
 
 template <class S>
 void run_solve(const Program::Step& step, std::span<S> registers) {
-  static thread_local std::vector<S> operands;
-  operands.clear();
+  std::vector<S> operands;
   for (const std::uint32_t operand : step.operands()) operands.push_back(registers[operand]);
   step.solve->system->solve(operands, registers.subspan(step.to, step.results()));
+}
+/// The same in double precision, without allocations, because systems are solved in the innermost loops of workspace
+/// analyses. @param scratch  memory for the operands and for the system
+void run_solve(const Program::Step& step, std::span<double> registers, std::span<double> scratch) {
+  const std::span<double> operands = scratch.first(step.operands().size());
+  for (std::size_t i = 0; i < operands.size(); ++i) operands[i] = registers[step.operands()[i]];
+  step.solve->system->solve(operands, registers.subspan(step.to, step.results()), scratch.subspan(operands.size()));
 }
 
 /// Evaluates one of the four basic operations or a negation without an indirect call, which is faster.
@@ -112,7 +121,10 @@ void Program::run(std::size_t stage, std::span<S> registers) const {
   for (const Step& step : stages_[stage].steps) {
     if (run_inline(step, registers)) continue;
     if (step.code == Code::solve) {
-      run_solve(step, registers);
+      if constexpr (std::is_same_v<S, double>)
+        run_solve(step, registers, registers.subspan(stage_of_.size()));
+      else
+        run_solve(step, registers);
       continue;
     }
     S arguments[kMaxArguments];
