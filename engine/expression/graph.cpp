@@ -14,6 +14,16 @@ namespace {
 
 bool commutes(const Operation& operation) { return operation.code == Code::add || operation.code == Code::multiply; }
 
+// Operations that are applied often, found by name only once.
+struct CommonOperations {
+  const Operation &add = operation("+"), &subtract = operation("-"), &multiply = operation("*"),
+                  &divide = operation("/"), &power = operation("^");
+};
+const CommonOperations& common() {
+  static const CommonOperations operations;
+  return operations;
+}
+
 }  // namespace
 
 std::size_t Graph::Hash::operator()(const Entry& entry) const {
@@ -46,10 +56,9 @@ Node Graph::input(std::size_t position, Groups group) {
 /// base^exponent as products by repeated squaring, in the same order as in operation ^, so that the result has the same
 /// bits.
 Node Graph::power(Node base, int exponent) {
-  const Operation& times = operation("*");
-  const auto product = [&](Node x, Node y) { return apply(times, std::array{x, y}); };
+  const auto product = [&](Node x, Node y) { return apply(common().multiply, std::array{x, y}); };
   if (exponent == 0) return number(1);
-  if (exponent < 0) return apply(operation("/"), std::array{number(1), power(base, -exponent)});
+  if (exponent < 0) return apply(common().divide, std::array{number(1), power(base, -exponent)});
   Node result{};
   for (bool first = true; exponent > 0; exponent /= 2) {
     if (exponent % 2 != 0) {
@@ -80,8 +89,8 @@ Node Graph::apply(const Operation& operation, std::span<const Node> arguments) {
     values[i] = argument.number;
   }
   if (are_constants) return number(std::get<Rule<double>>(operation.rules)(values, arguments.size()));
-  if (operation.name == "^" && (*this)[entry.arguments[1]].is_number() && values[1] == std::nearbyint(values[1]) &&
-      std::fabs(values[1]) <= 1024)
+  if (operation == common().power && (*this)[entry.arguments[1]].is_number() &&
+      values[1] == std::nearbyint(values[1]) && std::fabs(values[1]) <= 1024)
     return power(entry.arguments[0], static_cast<int>(values[1]));
   return intern(entry);
 }
@@ -117,18 +126,26 @@ std::vector<Node> Graph::unknowns(Node status) {
 }
 
 std::vector<Node> Graph::reachable(std::span<const Node> roots, const std::function<bool(Node)>& is_known) const {
-  std::vector<bool> seen(entries_.size());
-  std::vector<Node> all;
-  const auto visit = [&](Node node) {
+  // The order of the indices is a topological order. The nodes are visited in the opposite order; a bit set contains
+  // those that have been reached, but not visited yet.
+  constexpr std::size_t kBits = 64;
+  std::vector<std::uint64_t> reached(entries_.size() / kBits + 1);
+  const auto reach = [&](Node node) {
     const auto index = static_cast<std::size_t>(node);
-    if (seen[index]) return;
-    seen[index] = true;
-    if (!is_known || !is_known(node)) all.push_back(node);
+    reached[index / kBits] |= std::uint64_t{1} << index % kBits;
   };
-  for (const Node root : roots) visit(root);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (const Node operand : (*this)[all[i]].operands()) visit(operand);
-  std::ranges::sort(all);  // the order of the indices is a topological order
+  for (const Node root : roots) reach(root);
+  std::vector<Node> all;
+  for (std::size_t word = reached.size(); word-- > 0;)
+    while (reached[word] != 0) {
+      const auto bit = static_cast<std::size_t>(std::bit_width(reached[word]) - 1);
+      reached[word] &= ~(std::uint64_t{1} << bit);
+      const auto node = static_cast<Node>(word * kBits + bit);
+      if (is_known && is_known(node)) continue;
+      all.push_back(node);
+      for (const Node operand : (*this)[node].operands()) reach(operand);
+    }
+  std::ranges::reverse(all);
   return all;
 }
 
@@ -208,16 +225,16 @@ Term call(const Operation& function, const Term& x, const Term& y) {
   return {x.graph(), x.graph().apply(function, std::array{x.node(), y.node()})};
 }
 
-Term operator+(const Term& x, const Term& y) { return x.is(0) ? y : y.is(0) ? x : call(operation("+"), x, y); }
+Term operator+(const Term& x, const Term& y) { return x.is(0) ? y : y.is(0) ? x : call(common().add, x, y); }
 Term operator-(const Term& x, const Term& y) {
   if (x.node() == y.node()) return {x.graph(), 0.0};
-  return y.is(0) ? x : x.is(0) ? -y : call(operation("-"), x, y);
+  return y.is(0) ? x : x.is(0) ? -y : call(common().subtract, x, y);
 }
 Term operator*(const Term& x, const Term& y) {
   if (x.is(0) || y.is(0)) return {x.graph(), 0.0};
-  return x.is(1) ? y : y.is(1) ? x : x.is(-1) ? -y : y.is(-1) ? -x : call(operation("*"), x, y);
+  return x.is(1) ? y : y.is(1) ? x : x.is(-1) ? -y : y.is(-1) ? -x : call(common().multiply, x, y);
 }
-Term operator/(const Term& x, const Term& y) { return y.is(1) || x.is(0) ? x : call(operation("/"), x, y); }
+Term operator/(const Term& x, const Term& y) { return y.is(1) || x.is(0) ? x : call(common().divide, x, y); }
 Term operator-(const Term& x) { return call(negation(), x); }
 
 }  // namespace pkm::expression

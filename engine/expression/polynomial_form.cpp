@@ -1,7 +1,9 @@
 #include "engine/expression/polynomial_form.hpp"
 
 #include <algorithm>
-#include <unordered_map>
+#include <cstdint>
+#include <initializer_list>
+#include <span>
 
 #include "engine/math/scalar.hpp"
 
@@ -14,7 +16,22 @@ constexpr std::size_t kMaxCoefficients = 5;
 constexpr int kMaxDepth = 500, kMaxSteps = 100'000;
 
 /// Coefficients of a polynomial in z, constant term first; an empty list is the polynomial 0.
-using Coefficients = std::vector<Term>;
+class Coefficients {
+ public:
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  Node& operator[](std::size_t i) { return c_[i]; }
+  Node operator[](std::size_t i) const { return c_[i]; }
+  auto begin() { return c_.begin(); }
+  auto end() { return c_.begin() + size_; }
+  auto begin() const { return c_.begin(); }
+  auto end() const { return c_.begin() + size_; }
+  void resize(std::size_t size) { size_ = static_cast<std::uint8_t>(size); }
+
+ private:
+  std::array<Node, kMaxCoefficients> c_{};
+  std::uint8_t size_ = 0;
+};
 
 /// The radical form A + B sqrt(Q) of a node, where A, B and Q are polynomials in z.
 struct RadicalForm {
@@ -22,29 +39,6 @@ struct RadicalForm {
   Node radicand{};  ///< the node Q under the root; meaningful only if B is not 0
   Coefficients Q;
 };
-
-Coefficients trimmed(Coefficients p) {
-  while (!p.empty() && p.back().is(0)) p.pop_back();
-  return p;
-}
-Coefficients sum(const Coefficients& p, const Coefficients& q) {
-  Coefficients r = p.size() >= q.size() ? p : q;
-  const Coefficients& shorter = p.size() >= q.size() ? q : p;
-  for (std::size_t i = 0; i < shorter.size(); ++i) r[i] = p[i] + q[i];
-  return trimmed(r);
-}
-Coefficients negated(Coefficients p) {
-  for (Term& c : p) c = -c;
-  return p;
-}
-std::optional<Coefficients> product(const Coefficients& p, const Coefficients& q) {
-  if (p.empty() || q.empty()) return Coefficients();
-  if (p.size() + q.size() - 1 > kMaxCoefficients) return {};
-  Coefficients r(p.size() + q.size() - 1, Term(p[0].graph(), 0.0));
-  for (std::size_t i = 0; i < p.size(); ++i)
-    for (std::size_t j = 0; j < q.size(); ++j) r[i + j] = r[i + j] + p[i] * q[j];
-  return trimmed(r);
-}
 
 class NormalForm {
  public:
@@ -57,16 +51,20 @@ class NormalForm {
     std::vector<Node> stack = {root};
     while (!stack.empty()) {
       const Node node = stack.back();
-      const std::vector<Node> operands = forms_.contains(node) ? std::vector<Node>() : operands_of_form(node);
-      const auto next = std::ranges::find_if(operands, [&](Node operand) { return !forms_.contains(operand); });
+      const std::span<const Node> operands = is_known(node) ? std::span<const Node>() : operands_of_form(node);
+      const auto next = std::ranges::find_if(operands, [&](Node operand) { return !is_known(operand); });
       if (next != operands.end()) {
         stack.push_back(*next);
         continue;
       }
       stack.pop_back();
-      if (!forms_.contains(node)) forms_.emplace(node, combine_forms(node));
+      if (is_known(node)) continue;
+      const auto combined = combine_forms(node);
+      forms_.push_back(combined);
+      index_.resize(graph_.size());
+      index_[static_cast<std::size_t>(node)] = static_cast<std::uint32_t>(forms_.size());
     }
-    return forms_.at(root);
+    return known_form(root);
   }
 
   /// The constraint node >= 0 in conjunctive normal form; std::nullopt if it has no such form or exceeds the limits.
@@ -81,35 +79,79 @@ class NormalForm {
  private:
   using Clauses = std::optional<std::vector<Clause>>;
 
-  /// Those operands of a node whose radical forms combine_forms() needs to find the radical form of the node.
-  std::vector<Node> operands_of_form(Node node) const {
+  bool is_known(Node node) const {
+    const auto i = static_cast<std::size_t>(node);
+    return i < index_.size() && index_[i] != 0;
+  }
+  const std::optional<RadicalForm>& known_form(Node node) const {
+    return forms_[index_[static_cast<std::size_t>(node)] - 1];
+  }
+
+  /// The operands of a node whose radical forms combine_forms() needs to find that of the node.
+  std::span<const Node> operands_of_form(Node node) const {
     const Entry& entry = graph_[node];
     if ((entry.groups & z_) == 0 || !entry.operation) return {};
     switch (entry.operation->code) {
       case Code::add:
       case Code::subtract:
       case Code::multiply:
-        return {entry.arguments[0], entry.arguments[1]};
+        return entry.operands();
       case Code::divide:
         if ((graph_[entry.arguments[1]].groups & z_) != 0) return {};
         [[fallthrough]];
       case Code::negate:
       case Code::sqrt:
       case Code::abs:
-        return {entry.arguments[0]};
+        return entry.operands().first(1);
       default:
         return {};
     }
   }
+  Term term(Node node) const { return {graph_, node}; }
+  /// The polynomial with these coefficients, without leading zeros.
+  Coefficients polynomial_of(std::initializer_list<Term> c) const {
+    Coefficients p;
+    for (const Term& each : c) {
+      p.resize(p.size() + 1);
+      p[p.size() - 1] = each.node();
+    }
+    return trimmed(p);
+  }
+  Coefficients trimmed(Coefficients p) const {
+    while (!p.empty() && term(p[p.size() - 1]).is(0)) p.resize(p.size() - 1);
+    return p;
+  }
+  Coefficients sum(const Coefficients& p, const Coefficients& q) const {
+    Coefficients r = p.size() >= q.size() ? p : q;
+    const Coefficients& shorter = p.size() >= q.size() ? q : p;
+    for (std::size_t i = 0; i < shorter.size(); ++i) r[i] = (term(p[i]) + term(q[i])).node();
+    return trimmed(r);
+  }
+  Coefficients negated(Coefficients p) const {
+    for (Node& c : p) c = (-term(c)).node();
+    return p;
+  }
+  std::optional<Coefficients> product(const Coefficients& p, const Coefficients& q) const {
+    if (p.empty() || q.empty()) return Coefficients();
+    if (p.size() + q.size() - 1 > kMaxCoefficients) return {};
+    Coefficients r;
+    r.resize(p.size() + q.size() - 1);
+    std::ranges::fill(r, graph_.number(0));
+    for (std::size_t i = 0; i < p.size(); ++i)
+      for (std::size_t j = 0; j < q.size(); ++j) r[i + j] = (term(r[i + j]) + term(p[i]) * term(q[j])).node();
+    return trimmed(r);
+  }
+
   /// The radical form of a node from the cached forms of its operands.
   std::optional<RadicalForm> combine_forms(Node node) {
     const Entry entry = graph_[node];
-    if ((entry.groups & z_) == 0) return RadicalForm{.A = trimmed({Term(graph_, node)}), .B = {}, .Q = {}};
-    if (entry.input >= 0) return RadicalForm{.A = {Term(graph_, 0.0), Term(graph_, 1.0)}, .B = {}, .Q = {}};
+    if ((entry.groups & z_) == 0) return RadicalForm{.A = polynomial_of({term(node)}), .B = {}, .Q = {}};
+    if (entry.input >= 0)
+      return RadicalForm{.A = polynomial_of({Term(graph_, 0.0), Term(graph_, 1.0)}), .B = {}, .Q = {}};
     switch (entry.operation->code) {
       case Code::add:
       case Code::subtract: {
-        auto x = forms_.at(entry.arguments[0]), y = forms_.at(entry.arguments[1]);
+        auto x = known_form(entry.arguments[0]), y = known_form(entry.arguments[1]);
         if (!x || !y) return {};
         if (entry.operation->code == Code::subtract) y = RadicalForm{negated(y->A), negated(y->B), y->radicand, y->Q};
         if (!x->B.empty() && !y->B.empty() && x->radicand != y->radicand) return {};
@@ -117,30 +159,30 @@ class NormalForm {
         return RadicalForm{sum(x->A, y->A), sum(x->B, y->B), radical.radicand, radical.Q};
       }
       case Code::negate: {
-        const auto& x = forms_.at(entry.arguments[0]);
+        const auto& x = known_form(entry.arguments[0]);
         if (!x) return {};
         return RadicalForm{negated(x->A), negated(x->B), x->radicand, x->Q};
       }
       case Code::multiply:
-        return times(forms_.at(entry.arguments[0]), forms_.at(entry.arguments[1]));
+        return times(known_form(entry.arguments[0]), known_form(entry.arguments[1]));
       case Code::divide: {
         if ((graph_[entry.arguments[1]].groups & z_) != 0) return {};
         const Term divisor(graph_, entry.arguments[1]);
-        auto x = forms_.at(entry.arguments[0]);
+        auto x = known_form(entry.arguments[0]);
         if (!x) return {};
         for (Coefficients* p : {&x->A, &x->B})
-          for (Term& c : *p) c = c / divisor;
+          for (Node& c : *p) c = (term(c) / divisor).node();
         return x;
       }
       case Code::sqrt: {
-        const auto& x = forms_.at(entry.arguments[0]);
+        const auto& x = known_form(entry.arguments[0]);
         if (!x || !x->B.empty()) return {};
-        return RadicalForm{.A = {}, .B = {Term(graph_, 1.0)}, .radicand = entry.arguments[0], .Q = x->A};
+        return RadicalForm{.A = {}, .B = polynomial_of({Term(graph_, 1.0)}), .radicand = entry.arguments[0], .Q = x->A};
       }
       case Code::abs: {  // |b sqrt(Q)| is replaced by |b| sqrt(Q)
-        const auto& x = forms_.at(entry.arguments[0]);
+        const auto& x = known_form(entry.arguments[0]);
         if (!squares_ || !x || !x->A.empty() || x->B.size() != 1) return {};
-        return RadicalForm{.A = {}, .B = {abs(x->B[0])}, .radicand = x->radicand, .Q = x->Q};
+        return RadicalForm{.A = {}, .B = polynomial_of({abs(term(x->B[0]))}), .radicand = x->radicand, .Q = x->Q};
       }
       default:
         return {};
@@ -263,7 +305,7 @@ class NormalForm {
     const auto BBQ = product(*BB, f->Q);
     if (!BBQ) return {};
     if (f->B.size() != 1) return {};
-    const Term b = f->B[0];
+    const Term b = term(f->B[0]);
     if (is_nonnegative(negated_factor(b.node()))) return conjunction(clause({f->A}), clause({sum(*AA, negated(*BBQ))}));
     if (is_nonnegative(b.node())) return clause({f->A, sum(*BBQ, negated(*AA))});
     if (!squares_) return {};
@@ -398,7 +440,7 @@ class NormalForm {
     for (const Coefficients& p : polynomials) {
       if (p.size() > degree_ + 1) return {};
       made.emplace_back().c.fill(graph_.number(0));
-      std::ranges::transform(p, made.back().c.begin(), &Term::node);
+      std::ranges::copy(p, made.back().c.begin());
     }
     return {{made}};
   }
@@ -424,9 +466,10 @@ class NormalForm {
   std::size_t degree_;
   bool squares_;
   const std::vector<bool>& nonnegative_;
-  /// Radical forms computed so far, by node; std::nullopt: the node has none.
-  std::unordered_map<Node, std::optional<RadicalForm>> forms_;
-  int depth_ = 0, steps_ = 0;  ///< recursion depth and number of steps of clauses()
+  /// Radical forms computed so far; std::nullopt: the node has none.
+  std::vector<std::optional<RadicalForm>> forms_;
+  std::vector<std::uint32_t> index_;  ///< by node: index in `forms_` plus 1; 0 or beyond the end: not computed yet
+  int depth_ = 0, steps_ = 0;         ///< recursion depth and number of steps of clauses()
 };
 
 }  // namespace
@@ -439,9 +482,7 @@ std::optional<std::vector<Clause>> polynomial_clauses(Graph& graph, Node f, Grou
 std::optional<std::vector<Node>> polynomial(Graph& graph, Node f, Groups z) {
   const auto form = NormalForm(graph, z, kMaxCoefficients - 1, false, {}).form(f);
   if (!form || !form->B.empty()) return {};
-  std::vector<Node> coefficients;
-  for (const Term& c : form->A) coefficients.push_back(c.node());
-  return coefficients;
+  return std::vector<Node>(form->A.begin(), form->A.end());
 }
 
 }  // namespace pkm::expression

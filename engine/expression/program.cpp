@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
+#include "engine/expression/changed_steps.hpp"
 #include "engine/expression/implicit_system.hpp"
 #include "engine/expression/interval_steps.hpp"
 
@@ -11,7 +11,10 @@ namespace pkm::expression {
 
 Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<const Groups> stages)
     : stages_(std::max<std::size_t>(stages.size(), 1)) {
-  std::unordered_map<Node, std::uint32_t> registers;
+  std::vector<std::uint32_t> registers(graph.size());  // of every node that has one
+  const auto register_of = [&registers](Node node) -> std::uint32_t& {
+    return registers[static_cast<std::size_t>(node)];
+  };
   std::uint32_t next = 0;
   const auto stage_for = [&](Groups groups) {
     std::size_t stage = 0;
@@ -22,20 +25,20 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
   for (const Node node : graph.reachable(outputs)) {
     const Entry& entry = graph[node];
     if (entry.operation == &unknown()) {  // the step that solves the system writes its register
-      registers.emplace(node, registers.at(entry.arguments[0]) + 1 + static_cast<std::uint32_t>(entry.number));
+      register_of(node) = register_of(entry.arguments[0]) + 1 + static_cast<std::uint32_t>(entry.number);
       continue;
     }
     const std::uint32_t to = next++;
-    registers.emplace(node, to);
+    register_of(node) = to;
     const std::size_t stage = stage_for(entry.groups);
     stage_of_.push_back(entry.is_number() ? -1 : static_cast<int>(stage));
     if (entry.operation) {
       Step step{
           .operation = entry.operation, .to = to, .from = {}, .count = entry.count, .code = entry.operation->code};
-      for (std::size_t i = 0; i < entry.count; ++i) step.from[i] = registers.at(entry.arguments[i]);
+      for (std::size_t i = 0; i < entry.count; ++i) step.from[i] = register_of(entry.arguments[i]);
       if (entry.solution) {
         SolveStep solve{.system = entry.solution->system, .from = {}};
-        for (const Node operand : entry.operands()) solve.from.push_back(registers.at(operand));
+        for (const Node operand : entry.operands()) solve.from.push_back(register_of(operand));
         step.solve = systems_.emplace_back(std::make_shared<const SolveStep>(std::move(solve))).get();
         next += static_cast<std::uint32_t>(step.results() - 1);
         stage_of_.resize(next, static_cast<int>(stage));
@@ -47,7 +50,7 @@ Program::Program(const Graph& graph, std::span<const Node> outputs, std::span<co
       stages_[stage].inputs.push_back({static_cast<std::uint32_t>(entry.input), to});
     }
   }
-  for (const Node node : outputs) outputs_.push_back(registers.at(node));
+  for (const Node node : outputs) outputs_.push_back(register_of(node));
   // The registers after those of the nodes are the scratch memory of the systems.
   std::size_t scratch = 0;
   for (const auto& solve : systems_) scratch = std::max(scratch, solve->from.size() + solve->system->scratch_size());
@@ -178,6 +181,16 @@ namespace {
                                 std::span<std::uint64_t> computed, std::span<Interval> registers) {
   for (const Program::Step& step : steps) {
     if (computed[step.to] == version) continue;
+    run_step(step, registers);
+    computed[step.to] = version;
+  }
+}
+
+[[gnu::flatten]] void run_changed_steps(std::span<const Program::Step> steps, std::uint64_t version,
+                                        const Dependence& dependence, std::span<std::uint64_t> computed,
+                                        std::span<Interval> registers) {
+  for (const Program::Step& step : steps) {
+    if (computed[step.to] >= dependence.changed[dependence.sets[step.to]]) continue;
     run_step(step, registers);
     computed[step.to] = version;
   }

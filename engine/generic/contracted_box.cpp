@@ -38,14 +38,8 @@ Interval rounded_outward(const Interval& range) {
   return {at(from), at(to)};
 }
 
-/// The constraints of a pose, and the constraints on the distances that the limbs can span.
-IntervalConstraints constraints_with_reach(const Model& model, const std::vector<Interval>& inputs) {
-  Model extended = model;
-  for (const Node node : model.reach_constraints) extended.domains.push_back({"reach", "", node});
-  return interval_constraints(extended, inputs);
-}
 bounds::FeasibleHull hull_of(const Model& model, const std::vector<Interval>& inputs) {
-  IntervalConstraints constraints = constraints_with_reach(model, inputs);
+  IntervalConstraints constraints = interval_constraints(model, inputs, model.reach_constraints);
   std::vector<Node> nodes;
   for (const auto& constraint : constraints.all) nodes.push_back(constraint.node);
   std::vector<std::size_t> axes;

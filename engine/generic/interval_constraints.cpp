@@ -108,16 +108,19 @@ class DomainTest {
 
 }  // namespace
 
-IntervalConstraints interval_constraints(const Model& model, const std::vector<Interval>& inputs) {
+IntervalConstraints interval_constraints(const Model& model, const std::vector<Interval>& inputs,
+                                         std::span<const Node> reach) {
   Graph graph = model.graph;
   std::vector<bounds::NamedConstraint> constraints;
-  for (const auto* const list : {&model.domains, &model.margins})
-    for (const Result& result : *list) {
-      std::optional<Node> quotient;
-      const Node node = without_acos(graph, result.node, inputs, quotient);
-      constraints.push_back({result.name, squared(graph, node, inputs)});
-      if (quotient) constraints.push_back({result.name, is_finite(graph, *quotient)});
-    }
+  const auto add = [&](const std::string& name, Node constraint) {
+    std::optional<Node> quotient;
+    const Node node = without_acos(graph, constraint, inputs, quotient);
+    constraints.push_back({name, squared(graph, node, inputs)});
+    if (quotient) constraints.push_back({name, is_finite(graph, *quotient)});
+  };
+  for (const Result& domain : model.domains) add(domain.name, domain.node);
+  for (const Node node : reach) add("reach", node);
+  for (const Result& margin : model.margins) add(margin.name, margin.node);
   for (const Node node : model.defined) constraints.push_back({"formulas have values", node});
   // Remove duplicates: a box over which two copies of a constraint are undecided would have no unique root.
   std::unordered_set<Node> listed;

@@ -1,6 +1,7 @@
 // Constraints of a feasible pose in a form for which interval arithmetic gives tight enclosures.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/generic/model.hpp"
@@ -27,6 +28,8 @@ struct IntervalConstraints {
 ///
 /// The last row applies to u = k / h if h - k >= 0 and h + k >= 0 are constraints, and to any u if 1 - |u| >= 0 is one.
 /// @param inputs  values of the graph's inputs for the design, as intervals
-IntervalConstraints interval_constraints(const Model& model, const std::vector<Interval>& inputs);
+/// @param reach   further constraints of the limbs, which follow from the domains
+IntervalConstraints interval_constraints(const Model& model, const std::vector<Interval>& inputs,
+                                         std::span<const Node> reach = {});
 
 }  // namespace pkm::generic

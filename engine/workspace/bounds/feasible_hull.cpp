@@ -1,8 +1,11 @@
 #include "engine/workspace/bounds/feasible_hull.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <queue>
+
+#include "engine/expression/changed_steps.hpp"
 
 namespace pkm::bounds {
 
@@ -42,14 +45,63 @@ FeasibleHull::FeasibleHull(Graph graph, std::vector<Node> constraints, std::vect
 }
 
 class FeasibleHull::Search {
+  /// The values of the constraints on a box. If the next box differs in few sides, only the steps that depend on
+  /// these are run again.
+  class Evaluator {
+   public:
+    Evaluator(const FeasibleHull& hull, std::span<const Interval> inputs)
+        : hull_(hull), registers_(hull.program_.registers()), computed_(registers_.size()) {
+      std::vector<Interval> all(inputs.begin(), inputs.end());
+      all.resize(hull.inputs_);
+      all.insert(all.end(), hull.numbers_.begin(), hull.numbers_.end());
+      hull.program_.start<Interval>(registers_);
+      hull.program_.run<Interval>(0, all, registers_);
+      axes_of_.resize(registers_.size());
+      for (std::size_t axis = 0; axis < hull.axes_.size(); ++axis)
+        if (hull.registers_[axis]) axes_of_[*hull.registers_[axis]] = static_cast<expression::InputSet>(1U << axis);
+      for (const Program::Step& step : hull.program_.stages()[1].steps) {
+        expression::InputSet axes = 0;
+        for (const std::uint32_t operand : step.operands()) axes |= axes_of_[operand];
+        std::fill_n(axes_of_.begin() + step.to, step.results(), axes);
+      }
+      changed_.fill(version_);
+    }
+
+    void set_box(const IntervalBox& box) {
+      const auto bits = [](const Interval& side) {
+        return std::array{std::bit_cast<std::uint64_t>(side.lower), std::bit_cast<std::uint64_t>(side.upper),
+                          static_cast<std::uint64_t>(side.decoration)};
+      };
+      expression::InputSet changed = 0;
+      for (std::size_t axis = 0; axis < hull_.axes_.size(); ++axis) {
+        if (!hull_.registers_[axis]) continue;
+        Interval& side = registers_[*hull_.registers_[axis]];
+        if (bits(side) != bits(box[axis])) changed |= static_cast<expression::InputSet>(1U << axis);
+        side = box[axis];
+      }
+      ++version_;
+      for (std::size_t set = 0; set < std::size_t{1} << hull_.axes_.size(); ++set)
+        if ((set & changed) != 0) changed_[set] = version_;
+    }
+    const Interval& value(const Constraint& constraint) {
+      if (computed_[constraint.output] < changed_[axes_of_[constraint.output]])
+        expression::run_changed_steps(constraint.steps, version_, {axes_of_, changed_}, computed_, registers_);
+      return registers_[constraint.output];
+    }
+
+   private:
+    const FeasibleHull& hull_;
+    std::vector<Interval> registers_;
+    std::vector<expression::InputSet> axes_of_;  ///< by register: the axes that it depends on
+    std::uint64_t version_ = 1;                  ///< number of the box
+    std::vector<std::uint64_t> computed_;        ///< by register: number of the box for which it was computed
+    /// By set of axes: number of the last box in which the side of one of them changed.
+    std::array<std::uint64_t, std::size_t{1} << kMaxAxes> changed_;
+  };
+
  public:
   Search(const FeasibleHull& hull, std::span<const Interval> inputs)
-      : hull_(hull), registers_(hull.program_.registers()), computed_(registers_.size()) {
-    std::vector<Interval> all(inputs.begin(), inputs.end());
-    all.resize(hull.inputs_);
-    all.insert(all.end(), hull.numbers_.begin(), hull.numbers_.end());
-    hull.program_.start<Interval>(registers_);
-    hull.program_.run<Interval>(0, all, registers_);
+      : hull_(hull), boxes_(hull, inputs), points_(boxes_) {
     for (std::uint32_t k = 0; k < hull.constraints_.size(); ++k) all_.push_back(k);
   }
 
@@ -92,21 +144,21 @@ class FeasibleHull::Search {
     const std::size_t begin = work_;
     faces_.assign(2 * axes(), {});
     inner_.fill(Interval::empty());
-    add({box, all_});
+    open_ = all_;
+    add({box, {0, all_.size()}});
     IntervalBox hull = box;
     for (bool improves = true; improves;) {
       improves = false;
       for (std::size_t face = 0; face < faces_.size(); ++face) {
         if (!find_hull(hull)) return {};
-        const Piece whole = pieces_[faces_[face].top().second];
-        const std::size_t axis = longest_side(whole.sides, hull);
-        if (is_close(face, hull) || share(whole.sides[axis], hull[axis]) <= kSmallestSide || work_ - begin > kMaxWork)
-          continue;
-        improves = pieces_[faces_[face].top().second].is_bisected = true;
-        for (const Interval& half : halves(whole.sides[axis])) {
-          Piece part = whole;
-          part.sides[axis] = half;
-          add(std::move(part));
+        const std::uint32_t index = faces_[face].top().second;
+        const Longest longest = longest_side(pieces_[index].sides, hull);
+        if (is_close(face, hull) || longest.share <= kSmallestSide || work_ - begin > kMaxWork) continue;
+        improves = is_bisected_[index] = true;
+        Piece part = pieces_[index];
+        for (const Interval& half : halves(part.sides[longest.axis])) {
+          part.sides[longest.axis] = half;
+          add(part);
         }
       }
     }
@@ -129,48 +181,50 @@ class FeasibleHull::Search {
     return true;
   }
 
-  using Open = std::vector<std::uint32_t>;  ///< indices of constraints that are not satisfied on the whole box
+  /// A part of `open_`: indices of the constraints that are not satisfied on the whole box.
+  struct Open {
+    std::size_t begin, end;
+    std::size_t size() const { return end - begin; }
+  };
   struct Piece {
     IntervalBox sides;
     Open open;
-    bool is_bisected = false;
   };
 
   std::size_t axes() const { return hull_.axes_.size(); }
 
-  /// @param open  undecided constraints; those that are proven to be satisfied on the whole box are removed
-  /// @return true if the box is proven to contain no feasible pose
-  bool is_infeasible(const IntervalBox& box, Open& open) {
-    ++version_;
+  /// Appends those constraints of `open` that are not satisfied on the whole box to `open_`.
+  /// @return true if the box is proven to contain no feasible pose; the constraints appended are then incomplete
+  bool is_infeasible(Evaluator& evaluator, const IntervalBox& box, const Open& open) {
     ++work_;
-    for (std::size_t axis = 0; axis < axes(); ++axis)
-      if (hull_.registers_[axis]) registers_[*hull_.registers_[axis]] = box[axis];
-    std::size_t left = 0;
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      const Constraint& constraint = hull_.constraints_[open[i]];
-      expression::run_steps(constraint.steps, version_, computed_, registers_);
+    evaluator.set_box(box);
+    for (std::size_t i = open.begin; i < open.end; ++i) {
+      const Constraint& constraint = hull_.constraints_[open_[i]];
       work_ += constraint.steps.size();
-      const Interval& value = registers_[constraint.output];
+      const Interval& value = evaluator.value(constraint);
       if (value.is_certified_violated()) return true;
-      if (!value.is_certified_satisfied()) open[left++] = open[i];
+      if (!value.is_certified_satisfied()) open_.push_back(open_[i]);
     }
-    open.resize(left);
     return false;
   }
 
+  /// Depth-first bisection.
   bool is_proven_infeasible(const IntervalBox& slab) {
-    std::vector<Piece> pending{{slab, all_}};
+    open_ = all_;
+    pending_.assign(1, {slab, {0, all_.size()}});
     const std::size_t begin = work_;
-    while (!pending.empty()) {
-      Piece piece = std::move(pending.back());
-      pending.pop_back();
-      if (is_infeasible(piece.sides, piece.open)) continue;
-      if (piece.open.empty() || work_ - begin > kMaxWorkOfSlab) return false;
-      const std::size_t longest = longest_side(piece.sides, slab);
-      if (share(piece.sides[longest], slab[longest]) == 0) return false;
-      for (const Interval& half : halves(piece.sides[longest])) {
-        pending.push_back(piece);
-        pending.back().sides[longest] = half;
+    while (!pending_.empty()) {
+      const Piece piece = pending_.back();
+      pending_.pop_back();
+      open_.resize(piece.open.end);  // what follows belongs to boxes that are proven infeasible
+      if (is_infeasible(boxes_, piece.sides, piece.open)) continue;
+      const Open open{piece.open.end, open_.size()};
+      if (open.size() == 0 || work_ - begin > kMaxWorkOfSlab) return false;
+      const auto [axis, part] = longest_side(piece.sides, slab);
+      if (part == 0) return false;
+      for (const Interval& half : halves(piece.sides[axis])) {
+        pending_.push_back({piece.sides, open});
+        pending_.back().sides[axis] = half;
       }
     }
     return true;
@@ -180,10 +234,14 @@ class FeasibleHull::Search {
   static double share(const Interval& side, const Interval& whole) {
     return whole.width() > 0 && std::isfinite(whole.width()) ? side.width() / whole.width() : 0;
   }
-  std::size_t longest_side(const IntervalBox& box, const IntervalBox& whole) const {
-    std::size_t longest = 0;
+  struct Longest {
+    std::size_t axis;
+    double share;
+  };
+  Longest longest_side(const IntervalBox& box, const IntervalBox& whole) const {
+    Longest longest{0, share(box[0], whole[0])};
     for (std::size_t axis = 1; axis < axes(); ++axis)
-      if (share(box[axis], whole[axis]) > share(box[longest], whole[longest])) longest = axis;
+      if (const double each = share(box[axis], whole[axis]); each > longest.share) longest = {axis, each};
     return longest;
   }
   static std::array<Interval, 2> halves(const Interval& side) {
@@ -192,23 +250,34 @@ class FeasibleHull::Search {
 
   /// Adds a box to `pieces_`, unless it is proven to contain no feasible pose.
   void add(Piece piece) {
-    if (is_infeasible(piece.sides, piece.open)) return;
+    const std::size_t end = open_.size();
+    const bool is_excluded = is_infeasible(boxes_, piece.sides, piece.open);
+    const Open open{end, open_.size()};
+    if (is_excluded || open.size() == piece.open.size())
+      open_.resize(end);  // the constraints are those of the box that was bisected
+    else
+      piece.open = open;
+    if (is_excluded) return;
     add_feasible(piece);
     const auto index = static_cast<std::uint32_t>(pieces_.size());
     for (std::size_t axis = 0; axis < axes(); ++axis) {
       faces_[2 * axis].push({-piece.sides[axis].lower, index});
       faces_[2 * axis + 1].push({piece.sides[axis].upper, index});
     }
-    pieces_.push_back(std::move(piece));
+    pieces_.push_back(piece);
+    is_bisected_.push_back(false);
   }
 
   /// Adds a box, or its midpoint, to the box of feasible poses if it is feasible.
   void add_feasible(const Piece& piece) {
     IntervalBox feasible = piece.sides;
-    if (!piece.open.empty()) {
+    if (piece.open.size() > 0) {
       for (std::size_t axis = 0; axis < axes(); ++axis) feasible[axis] = piece.sides[axis].middle();
-      Open open = piece.open;
-      if (is_infeasible(feasible, open) || !open.empty()) return;
+      const std::size_t end = open_.size();
+      const bool is_excluded = is_infeasible(points_, feasible, piece.open);
+      const bool is_feasible = !is_excluded && open_.size() == end;
+      open_.resize(end);
+      if (!is_feasible) return;
     }
     for (std::size_t axis = 0; axis < axes(); ++axis)  // fmin and fmax ignore the NaN of an empty interval
       inner_[axis] = {std::fmin(inner_[axis].lower, feasible[axis].lower),
@@ -225,22 +294,21 @@ class FeasibleHull::Search {
   bool find_hull(IntervalBox& hull) {
     for (std::size_t face = 0; face < faces_.size(); ++face) {
       auto& boxes = faces_[face];
-      while (!boxes.empty() && pieces_[boxes.top().second].is_bisected) boxes.pop();
+      while (!boxes.empty() && is_bisected_[boxes.top().second]) boxes.pop();
       if (boxes.empty()) return false;
-      const Interval& side = pieces_[boxes.top().second].sides[face / 2];
-      (face % 2 == 0 ? hull[face / 2].lower : hull[face / 2].upper) = face % 2 == 0 ? side.lower : side.upper;
+      (face % 2 == 0 ? hull[face / 2].lower : hull[face / 2].upper) =
+          face % 2 == 0 ? -boxes.top().first : boxes.top().first;
     }
     return true;
   }
 
   const FeasibleHull& hull_;
-  std::vector<Interval> registers_;
-  std::vector<std::uint64_t> computed_;
-  std::uint64_t version_ = 0;
-  std::size_t work_ = 0;  ///< number of operations so far
-  Open all_;
-  std::vector<Piece> pieces_;
-  IntervalBox inner_;  ///< bounding box of the feasible poses that are known
+  Evaluator boxes_, points_;  ///< of boxes, and of their midpoints
+  std::size_t work_ = 0;      ///< number of operations so far, counted as if every step were run for every box
+  std::vector<std::uint32_t> all_, open_;
+  std::vector<Piece> pending_, pieces_;
+  std::vector<bool> is_bisected_;  ///< by index of `pieces_`
+  IntervalBox inner_;              ///< bounding box of the feasible poses that are known
   /// For each face of the bounding box, a queue of boxes: how far each extends in the direction of the face, and its
   /// index in `pieces_`.
   std::vector<std::priority_queue<std::pair<double, std::uint32_t>>> faces_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/expression/changed_steps.hpp"
 #include "engine/expression/formula_parser.hpp"
 
 namespace pkm::expression {
@@ -27,6 +28,15 @@ class Steps {
     run_steps(program_.stages()[0].steps, version, since_, registers_);
     return registers_[program_.outputs().front()];
   }
+  /// Runs the steps that depend on changed inputs. @param changed  by set of inputs: version of the last change
+  Interval run_changed(std::uint64_t version, const std::array<std::uint64_t, 4>& changed) {
+    std::vector<InputSet> sets(program_.registers());
+    for (const Program::Input& input : program_.stages()[0].inputs) sets[input.to] = input.position == 0 ? 1 : 2;
+    for (const Program::Step& step : program_.stages()[0].steps)
+      for (const std::uint32_t operand : step.operands()) sets[step.to] |= sets[operand];
+    run_changed_steps(program_.stages()[0].steps, version, {sets, changed}, since_, registers_);
+    return registers_[program_.outputs().front()];
+  }
 
  private:
   Program program_;
@@ -48,6 +58,16 @@ TEST(IntervalSteps, RunOncePerVersion) {
   f.set({5, 6}, {7, 8});
   expect_tight(f.run(1), 4, 12);  // the version says that nothing has changed
   expect_tight(f.run(2), 60, 84);
+}
+
+TEST(IntervalSteps, RunIfTheirInputsHaveChanged) {
+  Steps f("(x + 1)*(y + 1)");
+  f.set({1, 2}, {3, 4});
+  expect_tight(f.run_changed(1, {1, 1, 1, 1}), 8, 15);
+  f.set({5, 6}, {7, 8});
+  expect_tight(f.run_changed(2, {1, 1, 1, 1}), 8, 15);   // no input is said to have changed
+  expect_tight(f.run_changed(3, {1, 3, 1, 3}), 24, 35);  // x has changed
+  expect_tight(f.run_changed(4, {1, 3, 4, 4}), 48, 63);  // y has changed, too
 }
 
 TEST(IntervalSteps, ProductOfANodeWithItselfIsASquare) {
