@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <regex>
-
-#include "engine/core/error.hpp"
+#include "tests/unit/config/mechanism_text.hpp"
 #include "tests/unit/generic/files.hpp"
 
 namespace pkm {
@@ -14,25 +12,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Reads a file's text with some of it replaced. @param from  a regular expression that is there
-std::string rewritten(std::string text, const std::string& from, const std::string& to) {
-  const std::regex pattern(from);
-  EXPECT_TRUE(std::regex_search(text, pattern)) << from;
-  return std::regex_replace(text, pattern, to);
-}
-
-std::string refusal_of(const std::string& text) {
-  try {
-    read_mechanism_toml(text, "robot.toml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "it is accepted";
-}
-
 /// The line on mobility of `pkmopt check`.
 std::string mobility_of(const std::string& text) {
-  const std::string all = describe_mechanism(*read_mechanism_toml(text, "robot.toml"));
+  const std::string all = describe_mechanism(*test::read_robot(text));
   const std::size_t at = all.find("  mobility: ");
   EXPECT_NE(at, std::string::npos) << all;
   return all.substr(at + 12, all.find('\n', at) - at - 12);
@@ -67,45 +49,45 @@ std::string plane(const std::string& coordinates, const std::string& across, con
 }
 
 TEST(Across, ARodThatLeavesItsPlaneIsRefused) {
-  const std::string message = refusal_of(robot("3-prs-across"));
+  const std::string message = test::refusal_of(robot("3-prs-across"));
   EXPECT_THAT(
       message,
       HasSubstr("robot.toml:21: limb[1].across: the component of B - A along `across` changes with the pose ("));
   EXPECT_THAT(message, HasSubstr("give formulas in `follows`, `origin` or `end` that keep it in this plane"));
-  EXPECT_EQ(refusal_of(rewritten(robot("3-prs-across"), "across = [^\n]*\n", "")), "it is accepted");
+  EXPECT_EQ(test::refusal_of(test::substituted(robot("3-prs-across"), "across = [^\n]*\n", "")), "it is accepted");
 }
 
 TEST(Across, OffsetsThatNoPoseChangesArePlanar) {
   const std::string point = "platform = [0.1, 0, 0]\n";
-  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]", point)),
+  EXPECT_EQ(test::refusal_of(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]", point)),
             "it is accepted");
-  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]",
-                             "across_in = \"platform\"\n" + point)),
+  EXPECT_EQ(test::refusal_of(plane("{ x = \"along x\", y = \"along y\", phi = \"about z\" }", "[0, 0, 1]",
+                                   "across_in = \"platform\"\n" + point)),
             "it is accepted");
-  EXPECT_THAT(refusal_of(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]", point)),
+  EXPECT_THAT(test::refusal_of(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]", point)),
               HasSubstr("limb[1].across: the component"));
   // a slide along `across` carries the end: the limb ends in its plane
-  EXPECT_EQ(refusal_of(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]",
-                             "end = [\"x\", \"y\", 0]\n")),
+  EXPECT_EQ(test::refusal_of(plane("{ x = \"along x\", y = \"along y\", z = \"along z\" }", "[0, 0, 1]",
+                                   "end = [\"x\", \"y\", 0]\n")),
             "it is accepted");
   // in no plane of the axes, with rounding
-  EXPECT_EQ(refusal_of(plane("{ s = \"along x\", t = \"along y\" }", "[1, 1, 1]",
-                             "end = [\"s/3\", \"t/7\", \"-s/3 - t/7\"]\n")),
+  EXPECT_EQ(test::refusal_of(plane("{ s = \"along x\", t = \"along y\" }", "[1, 1, 1]",
+                                   "end = [\"s/3\", \"t/7\", \"-s/3 - t/7\"]\n")),
             "it is accepted");
 }
 
 TEST(Across, OtherDesignsThanTheDefaultCount) {
   const std::string tilted = "{ x = \"along x\", z = \"along z\", beta = \"about x\" }";
-  const std::string message = refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, \"h\", 0]\n"));
+  const std::string message = test::refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, \"h\", 0]\n"));
   EXPECT_THAT(message, HasSubstr("for a design other than the default"));
-  EXPECT_EQ(refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, 0, 0]\n")), "it is accepted");
+  EXPECT_EQ(test::refusal_of(plane(tilted, "[0, 1, 0]", "platform = [0.1, 0, 0]\n")), "it is accepted");
 }
 
 TEST(Across, HasNoEffectOnASlideWithoutRod) {
-  const std::string slide = rewritten(
+  const std::string slide = test::substituted(
       plane("{ x = \"along x\", y = \"along y\" }", "[0, 0, 1]", "platform = [0, 0, 0]\ndirection = [1, 0, 0]\n"),
       "telescope", "slider");
-  EXPECT_THAT(refusal_of(slide), HasSubstr("limb[1].across: `across` has no effect on a slide without `rod`"));
+  EXPECT_THAT(test::refusal_of(slide), HasSubstr("limb[1].across: `across` has no effect on a slide without `rod`"));
 }
 
 TEST(Mobility, ThreeLegsDoNotHoldTheRotations) {
@@ -127,24 +109,24 @@ TEST(Mobility, JointsThatHoldThePlatformAreCounted) {
 
 TEST(Mobility, SingleRodsDoNotHoldTheRotationsOfADelta) {
   EXPECT_THAT(
-      mobility_of(rewritten(test::text_of_mechanism("rotary-delta"), "\npair [^\n]*", "")),
+      mobility_of(test::substituted(test::text_of_mechanism("rotary-delta"), "\npair [^\n]*", "")),
       HasSubstr("3 of 6 degrees of freedom at this pose: the joints of the file do not prevent rotation about x"));
 }
 
 TEST(Mobility, LegsInAPlaneHoldThePlatformIfTheirJointsAreParallel) {
-  const std::string balls = rewritten(test::text_of_mechanism("3-rpr"), "\nacross [^\n]*", "");
+  const std::string balls = test::substituted(test::text_of_mechanism("3-rpr"), "\nacross [^\n]*", "");
   EXPECT_THAT(mobility_of(balls),
               HasSubstr("3 of 6 degrees of freedom at this pose: the joints of the file do not prevent "
                         "translation along z, rotation about x, rotation about y"));
-  EXPECT_EQ(mobility_of(rewritten(balls, "\nradius ", "\nacross = [0, 0, 1]\nradius ")),
+  EXPECT_EQ(mobility_of(test::substituted(balls, "\nradius ", "\nacross = [0, 0, 1]\nradius ")),
             kDrives + "3 of 3 degrees of freedom at this pose");
 }
 
 TEST(Mobility, TheCauseOfASingularPoseIsNamed) {
   const auto with = [](std::string text, const std::vector<std::pair<std::string, std::string>>& defaults) {
     for (const auto& [name, value] : defaults)
-      text = rewritten(text, "\n" + name + " = \\{ default = \"[^\"]*\"",
-                       "\n" + name + " = { default = \"" + value + "\"");
+      text = test::substituted(text, "\n" + name + " = \\{ default = \"[^\"]*\"",
+                               "\n" + name + " = { default = \"" + value + "\"");
     return text;
   };
   const std::string meeting = with(test::text_of_mechanism("3-rpr"),

@@ -5,12 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "engine/config/mechanism_file.hpp"
 #include "engine/core/catalogue.hpp"
+#include "tests/unit/config/mechanism_text.hpp"
 
 namespace pkm {
 namespace {
 
+using test::value_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -40,29 +41,11 @@ range = [-9, "q_max"]
          '\n' + more;
 }
 
-std::shared_ptr<const Mechanism> read(const std::string& text) { return read_mechanism_toml(text, "m.toml"); }
-
-std::string refusal(const std::string& text) {
-  try {
-    read(text);
-    return "";
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-}
-
-double value_of(const NamedValues& values, const std::string& name) {
-  for (const auto& [each, value] : values)
-    if (each == name) return value;
-  ADD_FAILURE() << "no " << name;
-  return 0;
-}
-
 const Pose<double> kPose = {0.5, 1.2};
 constexpr double kHeight = 1.6;  // sqrt(4 - 1.44)
 
 TEST(MechanismQuantities, DependOnTheDesignThePoseOrTheMotion) {
-  const auto mechanism = read(slider(R"toml([inputs]
+  const auto mechanism = test::read_robot(slider(R"toml([inputs]
 t = { unit = "rad", default = 0.25, meaning = "an angle" }
 [[quantity]]
 name = "twice"
@@ -118,18 +101,18 @@ formula = "sin(t)*x"
 
 TEST(MechanismQuantities, RefuseWhatCannotBe) {
   const std::string input = "[inputs]\nt = { unit = \"rad\" }\n";
-  EXPECT_THAT(refusal(slider(input + "[[margin]]\nname = \"m\"\nformula = \"t\"\n")),
+  EXPECT_THAT(test::refusal_of(slider(input + "[[margin]]\nname = \"m\"\nformula = \"t\"\n")),
               HasSubstr("only the formula of a [[quantity]] may depend on [inputs] or rates"));
-  EXPECT_THAT(refusal(slider("[[quantity]]\nname = \"dci\"\nformula = \"x\"\n")),
+  EXPECT_THAT(test::refusal_of(slider("[[quantity]]\nname = \"dci\"\nformula = \"x\"\n")),
               HasSubstr("'dci' is a predefined name of every mechanism"));
-  EXPECT_THAT(refusal(slider("[[quantity]]\nname = \"l\"\nformula = \"x\"\n")),
+  EXPECT_THAT(test::refusal_of(slider("[[quantity]]\nname = \"l\"\nformula = \"x\"\n")),
               HasSubstr("'l' is already the name of"));
-  EXPECT_THAT(refusal(slider("[[quantity]]\nname = \"a\"\nformula = \"b\"\n")), HasSubstr("'b'"));
-  EXPECT_THAT(refusal(slider("[inputs]\nt = { default = 1 }\n")), HasSubstr("inputs.t.unit"));
+  EXPECT_THAT(test::refusal_of(slider("[[quantity]]\nname = \"a\"\nformula = \"b\"\n")), HasSubstr("'b'"));
+  EXPECT_THAT(test::refusal_of(slider("[inputs]\nt = { default = 1 }\n")), HasSubstr("inputs.t.unit"));
 }
 
 TEST(ReportedMargins, AreTheMinimumOfAListOrTheShownFormula) {
-  const auto mechanism = read(slider(R"toml([[margin]]
+  const auto mechanism = test::read_robot(slider(R"toml([[margin]]
 name = "inside"
 formula = ["1 - x", "1 + x"]
 unit = "m"
@@ -151,22 +134,22 @@ formula = "x + 2"
   const PoseReport outside = mechanism->inspect(std::vector<double>{2, 9}, {1.5, 0}, "+", no_limits(mechanism->info()));
   EXPECT_FALSE(outside.feasible);
   EXPECT_THAT(outside.reason, HasSubstr("inside"));
-  EXPECT_THAT(refusal(slider("[[margin]]\nname = \"m\"\nformula = \"x\"\nshown_unit = \"m\"\n")),
+  EXPECT_THAT(test::refusal_of(slider("[[margin]]\nname = \"m\"\nformula = \"x\"\nshown_unit = \"m\"\n")),
               HasSubstr("`shown_unit` requires `shown`"));
 }
 
 TEST(ModeNames, AreThoseOfTheFile) {
-  const auto named = read(slider("", "e = { signs = [\"+\", \"-\"], names = [\"upper\", \"lower\"] }"));
+  const auto named = test::read_robot(slider("", "e = { signs = [\"+\", \"-\"], names = [\"upper\", \"lower\"] }"));
   EXPECT_THAT(named->info().modes, ElementsAre("upper", "lower"));
-  const auto branch = read(slider("[[margin]]\nname = \"side\"\nformula = \"b*x\"\n",
-                                  "b = { signs = [\"+\", \"-\"], branch = true }\ne = [\"-\", \"+\"]"));
+  const auto branch = test::read_robot(slider("[[margin]]\nname = \"side\"\nformula = \"b*x\"\n",
+                                              "b = { signs = [\"+\", \"-\"], branch = true }\ne = [\"-\", \"+\"]"));
   EXPECT_THAT(branch->info().modes, ElementsAre("-", "+", "-/-", "+/-"));
   EXPECT_THAT(branch->info().branches, ElementsAre("+", "-"));
   const std::vector<double> design = {2, 9};
   const LimitSpec none = no_limits(branch->info());
   EXPECT_TRUE(branch->inspect(design, kPose, "+", none).feasible);
   EXPECT_FALSE(branch->inspect(design, kPose, "+/-", none).feasible);
-  EXPECT_THAT(refusal(slider("", "e = { signs = [\"+\", \"-\"], names = [\"a\", \"a\"] }")),
+  EXPECT_THAT(test::refusal_of(slider("", "e = { signs = [\"+\", \"-\"], names = [\"a\", \"a\"] }")),
               HasSubstr("a different name for each sign"));
 }
 
@@ -182,7 +165,7 @@ name = "tool"
 centre = ["x", "y", 0]
 mass = "m"
 )toml");
-  const auto table = read(text);
+  const auto table = test::read_robot(text);
   ASSERT_TRUE(table->dynamics());
   EXPECT_THAT(table->dynamics()->mass_models(), ElementsAre("table", "lengths"));
   EXPECT_EQ(table->dynamics()->mass_model(), "table");
@@ -202,8 +185,8 @@ mass = "m"
 }
 
 TEST(Designs, ThatDescribeNoMechanismAreRefused) {
-  const auto mechanism =
-      read(slider("[[design]]\nname = \"long rod\"\nformula = \"l - 1.5\"\nunit = \"m\"\nrequired = true\n"));
+  const auto mechanism = test::read_robot(
+      slider("[[design]]\nname = \"long rod\"\nformula = \"l - 1.5\"\nunit = \"m\"\nrequired = true\n"));
   EXPECT_FALSE(mechanism->design_tests());
   EXPECT_FALSE(mechanism->refuse(std::vector<double>{2, 9}));
   EXPECT_EQ(*mechanism->refuse(std::vector<double>{1, 9}), "long rod is violated: -0.5 m < 0");
@@ -212,13 +195,14 @@ TEST(Designs, ThatDescribeNoMechanismAreRefused) {
 
 TEST(Closures, ShowWhereTheMechanismIsSingular) {
   const auto mechanism =
-      read(slider("", "e = [\"+\", \"-\"]", "closures = [\"((q - x)^2 + y^2 - l^2)/2\", \"y - p\"]"));
+      test::read_robot(slider("", "e = [\"+\", \"-\"]", "closures = [\"((q - x)^2 + y^2 - l^2)/2\", \"y - p\"]"));
   const PoseReport report = mechanism->inspect(std::vector<double>{2, 9}, kPose, "-", no_limits(mechanism->info()));
   EXPECT_NEAR(*report.det_Jq, kHeight, 1e-15);  // -(q - x)
   EXPECT_NEAR((*report.G)(0, 0), kHeight, 1e-15);
   EXPECT_NEAR((*report.G)(0, 1), 1.2, 1e-15);
   EXPECT_NEAR((*report.J)(0, 1), 1.2 / kHeight, 1e-15);
-  EXPECT_THAT(refusal(slider("", "e = [\"+\", \"-\"]", "closures = [\"q - x\"]")), HasSubstr("as many formulas"));
+  EXPECT_THAT(test::refusal_of(slider("", "e = [\"+\", \"-\"]", "closures = [\"q - x\"]")),
+              HasSubstr("as many formulas"));
 }
 
 }  // namespace
