@@ -47,12 +47,6 @@ const std::vector<ChainForm>& chain_forms() {
   return forms;
 }
 
-std::string with_dashes(const std::string& joints) {
-  std::string text;
-  for (const char letter : joints) text += (text.empty() ? "" : "-") + std::string(1, letter);
-  return text;
-}
-
 const ChainForm& form_of(const Chain& chain) {
   return *std::ranges::find_if(chain_forms(), [&](const ChainForm& form) { return form.joints == chain.joints; });
 }
@@ -168,18 +162,65 @@ Term wrapped(const Term& angle, const Term& centre) {
   return centre + call(expression::angle_wrapping(), angle - centre);
 }
 
+std::string with_dashes(const std::string& joints) {
+  std::string text;
+  for (const char letter : joints) text += (text.empty() ? "" : "-") + std::string(1, letter);
+  return text;
+}
+
+namespace {
+
+/// Index of the driven joint of a chain that Newton's method solves.
+std::size_t driven_of_solved(const Chain& chain) {
+  const auto is_possible = [&](char joint) { return joint == 'P' || joint == 'R'; };
+  const auto driven = chain.table.find("driven");
+  if (!driven) {
+    const std::size_t slide = chain.joints.find('P'),
+                      found = slide < chain.joints.size() ? slide : chain.joints.find('R');
+    if (found >= chain.joints.size())
+      throw chain.table.find("chain")->refusal("the chain " + with_dashes(chain.joints) +
+                                               " has no P or R that could be driven");
+    return found;
+  }
+  const auto index = static_cast<std::size_t>(driven->integer() - 1);
+  std::vector<std::string> possible;
+  for (std::size_t i = 0; i < chain.joints.size(); ++i)
+    if (is_possible(chain.joints[i])) possible.push_back(std::to_string(i + 1));
+  if (index >= chain.joints.size() || !is_possible(chain.joints[index]))
+    throw driven->refusal("joint " + std::to_string(index + 1) + " of the chain " + with_dashes(chain.joints) +
+                          " cannot be driven; expected one of " + join(possible));
+  return index;
+}
+
+/// Whether the table gives the links as vectors.
+bool has_link_vectors(const ConfigValue& table) {
+  const auto links = table.find("links");
+  if (!links || !links->is_list()) return false;
+  return std::ranges::any_of(links->elements("a list"), [](const ConfigValue& link) { return link.is_list(); });
+}
+
+}  // namespace
+
 Chain read_chain(const ConfigValue& table) {
   Chain chain{.table = table, .joints = "", .drive = "chain", .driven = 0, .usual = 0};
   constexpr const char* kExpected = "a list of joints from the base to the platform: [\"P\", \"R\", \"S\"]";
   const ConfigValue list = table.at("chain", kExpected);
-  for (const ConfigValue& joint : list.elements(kExpected)) chain.joints += joint.word({"P", "R", "U", "S"});
+  for (const ConfigValue& joint : list.elements(kExpected)) chain.joints += joint.word({"P", "R", "C", "U", "S"});
   const auto form =
       std::ranges::find_if(chain_forms(), [&](const ChainForm& each) { return each.joints == chain.joints; });
   const bool is_spherical = table.has("angles");
-  if (is_spherical ? chain.joints != "RRR" : form == chain_forms().end())
-    throw list.refusal("no closed form of the " + std::string(is_spherical ? "spherical " : "") + "chain " +
-                       with_dashes(chain.joints) + " is known; expected one of " + supported_chains() +
-                       "; otherwise give the joints by drive = \"formula\"");
+  if (is_spherical && chain.joints != "RRR")
+    throw list.refusal("no closed form of the spherical chain " + with_dashes(chain.joints) +
+                       " is known; expected R-R-R");
+  if (!is_spherical && (form == chain_forms().end() || has_link_vectors(table))) {
+    if (!has_link_vectors(table))
+      throw list.refusal(
+          "no closed form of the chain " + with_dashes(chain.joints) + " is known; expected one of " +
+          supported_chains() +
+          ", or `links` with the vectors from each joint to the next, [[x, y, z], ..], for Newton's method");
+    chain.driven = chain.usual = driven_of_solved(chain);
+    return chain;
+  }
   if (!is_spherical) chain.drive = form->drive;
   chain.usual = chain.drive == "telescope" ? 1 : 0;
   chain.driven = chain.usual;
@@ -224,8 +265,10 @@ ConfigValue rewritten(const Chain& chain, MechanismDraft& draft) {
     const std::string key = form.axes[i];
     const auto differs = [&](const Vector3& v) { return draft.scope.at_default(dot(v, v)) > 1e-18; };
     if (key == "=" && differs(cross(directions[i], directions[i - 1])))
-      throw axes[i].refusal("the revolute joints of the chain " + with_dashes(chain.joints) +
-                            " have to be parallel for a closed form; expected the direction of the axis before");
+      throw axes[i].refusal(
+          "the revolute joints of the chain " + with_dashes(chain.joints) +
+          " have to be parallel for a closed form; expected the direction of the axis before, or `links` as "
+          "vectors, [[x, y, z], ..], for Newton's method");
     if (key == "across" && i > 0 && std::fabs(draft.scope.at_default(dot(directions[i], directions[0]))) > 1e-9)
       throw axes[i].refusal("the axis of the revolute joint has to be normal to " +
                             std::string(chain.is_hinged_at_platform() ? "that of the universal joint" : "the slide") +
@@ -295,28 +338,38 @@ void describe_base_joint(const LimbCopy& copy, NamedLimb& limb) {
 
 void name_chain_joints(const LimbCopy& copy, const ChainJoints& joints) {
   const Chain& chain = *copy.chain;
+  std::vector<ChainCoordinate> coordinates;
+  for (const auto& [index, joint] : joints)
+    coordinates.push_back({"q" + std::to_string(index + 1), chain.unit(index), joint, index == chain.driven});
+  name_chain_coordinates(copy, coordinates);
+}
+
+void name_chain_coordinates(const LimbCopy& copy, const std::vector<ChainCoordinate>& coordinates) {
+  const Chain& chain = *copy.chain;
   MechanismDraft& draft = copy.draft;
   const auto ranges = chain.table.find_table("joint_ranges");
   if (ranges) {
     std::vector<std::string> passive;
-    for (const auto& each : joints)
-      if (each.first != chain.driven) passive.push_back("q" + std::to_string(each.first + 1));
+    std::string driven;
+    for (const ChainCoordinate& each : coordinates) {
+      if (!each.is_driven) passive.push_back(each.name);
+      if (each.is_driven) driven = each.name;
+    }
     for (const std::string& key : ranges->keys())
       if (!contains(passive, key))
         throw ranges->find(key)->refusal(
-            passive.empty()
-                ? "the chain " + with_dashes(chain.joints) + " has no passive joint with a range"
-                : "expected a passive joint of the chain, one of " + join(passive) +
-                      (key == "q" + std::to_string(chain.driven + 1) ? "; `range` is that of the driven joint" : ""));
+            passive.empty() ? "the chain " + with_dashes(chain.joints) + " has no passive joint with a range"
+                            : "expected a passive joint of the chain, one of " + join(passive) +
+                                  (key == driven ? "; `range` is that of the driven joint" : ""));
   }
-  for (const auto& [index, joint] : joints) {
-    const std::string name = copy.name + ".q" + std::to_string(index + 1), unit = chain.unit(index);
-    const bool is_driven = index == chain.driven;
-    const auto range = ranges && !is_driven ? ranges->find("q" + std::to_string(index + 1)) : std::nullopt;
+  for (const ChainCoordinate& each : coordinates) {
+    const std::string name = copy.name + "." + each.name, unit = each.unit;
+    const bool is_driven = each.is_driven;
+    const auto range = ranges && !is_driven ? ranges->find(each.name) : std::nullopt;
     std::optional<std::array<Term, 2>> ends;
     if (range) ends = read_range(*range, unit, copy.group, draft);
-    Term value = joint;
-    if (ends && unit == "rad") value = wrapped(joint, ((*ends)[0] + (*ends)[1]) * 0.5);
+    Term value = each.value;
+    if (ends && unit == "rad") value = wrapped(value, ((*ends)[0] + (*ends)[1]) * 0.5);
     draft.scope.mark_as_defined(value.node());
     draft.scope.add_member(name, value);
     if (is_driven) continue;

@@ -87,7 +87,9 @@ class ConstraintSystem {
   }
 
   void add_limb(const NamedLimb& limb) {
-    if (limb.drive == "formula") throw NoConstraints{"the joints of limb " + limb.name + " are given by formulas"};
+    if (limb.drive == "formula")
+      throw NoConstraints{"the joints of limb " + limb.name +
+                          (limb.points.contains("J1") ? " have no closed form" : " are given by formulas")};
     if (limb.axes && limb.begin_on == kBaseFrame && limb.end_on == kPlatformFrame) {
       const Vector3& centre = limb.parts.front().arc->centre;  // forces through it do no work in the three joints
       for (std::size_t k = 0; k < 3; ++k) add({axis(k), moment_of(axis(k), centre)});

@@ -385,7 +385,9 @@ class JointReader {
         if (!is_driven(k)) missing.push_back(model_.info.joints[k].name);
       if (missing.empty()) continue;
       throw IncompleteDescription{
-          "limb " + limb.name + " has drive = \"formula\", so its links are unknown" +
+          "limb " + limb.name +
+          (limb.points.contains("J1") ? " is a chain without a closed form" : " has drive = \"formula\"") +
+          ", so its links are unknown" +
           (missing.size() < limb.joint_count ? ": no [[joint]] has drive = \"" + missing.front() + "\"" : "")};
     }
   }

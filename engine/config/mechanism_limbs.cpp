@@ -306,7 +306,8 @@ void read_copy(const LimbCopy& copy, const std::string& number) {
                              copy.base.name + " and " + copy.platform.name);
   const auto given = copy.table.find("joint_name");
   const std::string joint = given ? given->text("the joint's name") + number : copy.name;
-  if (copy.drive == "chain") return read_spherical_limb(copy, joint);
+  if (copy.drive == "chain")
+    return copy.chain->is_spherical() ? read_spherical_limb(copy, joint) : read_solved_limb(copy, joint);
   const limbs::Ends at = read_ends(copy);
   const char* const unit = copy.chain ? copy.chain->unit(copy.chain->driven) : copy.drive == "crank" ? "rad" : "m";
   const Term q = add_joint_variable(copy.table, joint, unit, copy.draft);
@@ -331,7 +332,7 @@ void read_limb(const ConfigValue& value, MechanismDraft& draft) {
   if (drive == "chain")
     for (ConfigValue& each : tables) {
       chains.push_back(read_chain(each));
-      if (!chains.back().is_spherical()) each = rewritten(chains.back(), draft);
+      if (chains.back().is_rewritten()) each = rewritten(chains.back(), draft);
     }
   const std::size_t copies = ends.size() * turns.size();
   const auto base = frames_of(table, "base_in", kBaseFrame, copies, draft),

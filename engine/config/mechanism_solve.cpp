@@ -39,7 +39,64 @@ std::string unit_of_unknown(const std::string& name, const ConfigValue& start, c
   return "1";
 }
 
+/// A system of equations, and the nodes of the graph that are its coefficients.
+struct ExtractedSystem {
+  std::shared_ptr<const ImplicitSystem> system;
+  std::vector<Node> coefficients;
+};
+
+/// Makes a system of as many equations, nodes of a graph, as there are unknowns. Subexpressions without unknowns become
+/// its coefficients.
+/// @param unknown  unknown(entry): index of the unknown that an input of the graph stands for; std::nullopt: none
+template <class Unknown>
+ExtractedSystem system_of(const Graph& graph, const std::vector<Node>& equations, const Unknown& unknown) {
+  const std::size_t n = equations.size();
+  Graph made;
+  std::vector<Node> coefficients, operands, copies(graph.size());
+  std::vector<bool> depends(graph.size());
+  for (std::size_t i = 0; i < n; ++i) made.input(i, 2);
+  const auto copy_of = [&](Node node) {
+    const auto index = static_cast<std::size_t>(node);
+    if (!depends[index] && copies[index] == Node{}) {
+      copies[index] = made.input(n + coefficients.size(), 1);
+      coefficients.push_back(node);
+    }
+    return copies[index];
+  };
+  for (const Node node : graph.reachable(equations)) {
+    const Entry& entry = graph[node];
+    const auto index = static_cast<std::size_t>(node);
+    const std::optional<std::size_t> i = unknown(entry);
+    if (i) copies[index] = made.input(*i, 2);
+    depends[index] = i || std::ranges::any_of(entry.operands(),
+                                              [&](Node operand) { return depends[static_cast<std::size_t>(operand)]; });
+    if (!depends[index] || i) continue;
+    operands.clear();
+    for (const Node operand : entry.operands()) operands.push_back(copy_of(operand));
+    copies[index] = made.apply_like(entry, operands);
+  }
+  std::vector<Node> left_sides;
+  for (const Node equation : equations) left_sides.push_back(copies[static_cast<std::size_t>(equation)]);
+  return {std::make_shared<const ImplicitSystem>(std::move(made), std::move(left_sides), coefficients.size()),
+          coefficients};
+}
+
 }  // namespace
+
+limbs::Term unknown_of_equations(std::size_t index, MechanismDraft& draft) {
+  return draft.model.term(draft.model.graph.input(kFirstUnknown + index, kUnknownGroups));
+}
+
+std::vector<Node> solve_equations(const std::vector<Node>& equations, const std::vector<Node>& start,
+                                  MechanismDraft& draft) {
+  auto [system, operands] =
+      system_of(draft.model.graph, equations, [](const Entry& entry) -> std::optional<std::size_t> {
+        if (entry.input < static_cast<std::int32_t>(kFirstUnknown)) return {};
+        return static_cast<std::size_t>(entry.input) - kFirstUnknown;
+      });
+  operands.insert(operands.end(), start.begin(), start.end());
+  return draft.model.graph.solve(std::move(system), std::move(operands));
+}
 
 SolvedSystems::SolvedSystems(const ConfigValue& root) {
   std::vector<std::string> known;
@@ -167,41 +224,14 @@ const std::vector<Node>& SolvedSystems::solve(System& system, MechanismDraft& me
         "the equations of " + join(system.unknowns) +
         " depend on those of another [[solve]] that depend on them; write them as one [[solve]]");
   system.is_being_solved = true;
-  const Graph& graph = draft_->model.graph;
-  const std::size_t n = system.unknowns.size();
-  // The subexpressions without unknowns become the coefficients of the system.
-  Graph equations;
-  std::vector<Node> coefficients, operands, copies(graph.size());
-  std::vector<bool> depends(graph.size());
-  const std::vector<Node> all = graph.reachable(system.equations);
-  for (std::size_t i = 0; i < n; ++i) equations.input(i, 2);
-  const auto copy_of = [&](Node node) {
-    const auto index = static_cast<std::size_t>(node);
-    if (!depends[index] && copies[index] == Node{}) {
-      copies[index] = equations.input(n + coefficients.size(), 1);
-      coefficients.push_back(node);
-    }
-    return copies[index];
-  };
-  for (const Node node : all) {
-    const Entry& entry = graph[node];
-    const auto index = static_cast<std::size_t>(node);
-    const auto [of, i] = unknown_of(entry);
-    if (of == &system) copies[index] = equations.input(i, 2);
-    depends[index] = of == &system || std::ranges::any_of(entry.operands(), [&](Node operand) {
-                       return depends[static_cast<std::size_t>(operand)];
-                     });
-    if (!depends[index] || of == &system) continue;
-    operands.clear();
-    for (const Node operand : entry.operands()) operands.push_back(copy_of(operand));
-    copies[index] = equations.apply_like(entry, operands);
-  }
-  std::vector<Node> left_sides;
-  for (const Node equation : system.equations) left_sides.push_back(copies[static_cast<std::size_t>(equation)]);
-  const auto solver =
-      std::make_shared<const ImplicitSystem>(std::move(equations), std::move(left_sides), coefficients.size());
+  auto [solver, coefficients] =
+      system_of(draft_->model.graph, system.equations, [&](const Entry& entry) -> std::optional<std::size_t> {
+        const auto [of, i] = unknown_of(entry);
+        if (of != &system) return {};
+        return i;
+      });
   coefficients.insert(coefficients.end(), system.start.begin(), system.start.end());
-  system.solution = mechanism.model.graph.solve(solver, copied(coefficients, mechanism));
+  system.solution = mechanism.model.graph.solve(std::move(solver), copied(coefficients, mechanism));
   return system.solution;
 }
 

@@ -52,6 +52,15 @@ class SolvedSystems {
   std::unique_ptr<MechanismDraft> draft_;
 };
 
+/// An unknown of equations for solve_equations(): an input of the mechanism's graph without a value. Systems may share
+/// their unknowns.
+limbs::Term unknown_of_equations(std::size_t index, MechanismDraft& draft);
+/// Solves as many equations, nodes of the mechanism's graph that vanish, as there are unknowns, by Newton's method.
+/// @param start  by unknown: where Newton's method starts
+/// @return nodes of the mechanism's graph: the status, then the unknowns (Graph::solve())
+std::vector<expression::Node> solve_equations(const std::vector<expression::Node>& equations,
+                                              const std::vector<expression::Node>& start, MechanismDraft& draft);
+
 /// Adds the unknowns of [[solve]] that are not coordinates to the names that formulas may use.
 void add_unknowns(MechanismDraft& draft);
 

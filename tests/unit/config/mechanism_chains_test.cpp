@@ -280,11 +280,12 @@ TEST(Chains, AreRefusedWithReasons) {
       with("\"R\", \"R\", \"R\"", "\"R\", \"R\", \"P\""),
       HasSubstr("robot.toml:18: limb[1].chain: no closed form of the chain R-R-P is known; expected one of R-R-R, "
                 "R-R-S, R-U-S, R-S-S, R-U-U, P-R-R, P-R-R-R, P-R-S, P-U-S, P-S-S, P-U-U, R-P-R, R-P-S, U-P-S, S-P-S, "
-                "U-P-U, S-P-R, U-P-R, and R-R-R with `angles`, a spherical chain; otherwise give the joints by drive = "
-                "\"formula\""));
+                "U-P-U, S-P-R, U-P-R, and R-R-R with `angles`, a spherical chain, or `links` with the vectors from "
+                "each joint to the "
+                "next, [[x, y, z], ..], for Newton's method"));
   EXPECT_THAT(with("\"R\", \"R\", \"R\"", "\"R\", \"R\", \"R\", \"R\""), HasSubstr("of the chain R-R-R-R is known"));
   EXPECT_THAT(with("\"R\", \"R\", \"R\"", "\"R\", \"Q\", \"R\""),
-              HasSubstr("limb[1].chain[2]: found \"Q\"; expected one of P, R, U, S"));
+              HasSubstr("limb[1].chain[2]: found \"Q\"; expected one of P, R, C, U, S"));
   EXPECT_THAT(with(chain, ""), HasSubstr("limb[1].chain: found nothing; expected a list of joints from the base"));
   // a Bennett linkage has skew axes
   EXPECT_THAT(with("axes = \\[\\[0, 0, 1\\], \\[0, 0, 1\\]", "axes = [[0, 0, 1], [0, 1, 1]"),
@@ -300,8 +301,10 @@ TEST(Chains, AreRefusedWithReasons) {
   EXPECT_THAT(with("links[^\n]*", "links = [-0.2, 0.3]"),
               HasSubstr("limb[1].links[1]: found -0.2; expected a number > 0"));
   EXPECT_THAT(with("zero = [^\n]*", "zero = [0, 0, 1]"), HasSubstr("zero"));
-  EXPECT_THAT(refusal_of(planar(kRRR + "driven = 5\n")),
-              HasSubstr("limb[1].driven: found 5; expected an integer in [1, 4]"));
+  EXPECT_THAT(refusal_of(planar(kRRR + "driven = 7\n")),
+              HasSubstr("limb[1].driven: found 7; expected an integer in [1, 6]"));
+  EXPECT_THAT(refusal_of(planar(kRRR + "driven = 4\n")),
+              HasSubstr("limb[1].driven: joint 4 of the chain R-R-R cannot be driven; expected one of 1, 2, 3"));
   EXPECT_THAT(refusal_of(planar(kRRR + "across = [0, 0, 1]\n")), HasSubstr("limb[1].across: found an unknown key"));
   EXPECT_THAT(
       refusal_of(planar(kRRR + "joint_ranges = { q1 = [0, 1] }\n")),

@@ -65,8 +65,9 @@ TEST(ContractedBox, ContainsTheWorkspaceAndIsHardlyLarger) {
   // the platform, so that intervals do not decide their lengths.
   const std::vector<std::string> unbounded = {"cogiro", "ipanema", "eight-cables", "exechon"};
   // Intervals do not decide the twist of the platform of the 3-PRS in a full rotation, and few poses of the
-  // parallelograms of H4 and Par4 near the axes of their cranks.
-  const std::vector<std::string> loose = {"3-prs", "3-prs-solved", "h4", "par4"};
+  // parallelograms of H4 and Par4 near the axes of their cranks. Krawczyk's test does not decide large boxes of the
+  // 3-PRC, so that its box is that of the reach of its limbs.
+  const std::vector<std::string> loose = {"3-prc", "3-prs", "3-prs-solved", "h4", "par4"};
   for (const std::string& file : robot_files()) {
     SCOPED_TRACE(file);
     const std::string name = fs::path(file).stem(), text = text_of_file(file);
