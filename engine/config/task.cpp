@@ -256,7 +256,7 @@ std::vector<Line> lines_of(const Task& task) {
     add("motion", motion, "margin", {{"type", "motion"}});
     lines.back().value.required = 0;
     add("motion", motion, "energy", {{"type", "energy"}});
-    add("motion", motion, "energy, braking recovered", {{"type", "energy"}});
+    add("motion", motion, "energy with recovery of braking energy", {{"type", "energy"}});
     set_key(lines.back().entry, "recuperation", {.kind = Kind::flag, .flag = true, .written = "true"});
     add("motion", motion, "shortest time", {{"type", "cycle-time"}});
   }

@@ -158,7 +158,7 @@ TaskMotion compute_motion(const TaskComparison& comparison, const Task& task, co
     return *std::ranges::find(robot.values, name + ": " + line, &TaskValue::name);
   };
   line_of("margin").limited_by = limiting_margin(robot, poses);
-  TaskValue &drawn = line_of("energy"), &recovered = line_of("energy, braking recovered");
+  TaskValue &drawn = line_of("energy"), &recovered = line_of("energy with recovery of braking energy");
   recovered.value = zero_if_rounding_error(recovered.value, drawn.value);
   if (const std::string impossible = named ? why_impossible(found) : ""; !impossible.empty())
     for (TaskValue* const line : {&drawn, &recovered, &line_of("shortest time")})

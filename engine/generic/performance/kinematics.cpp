@@ -98,15 +98,13 @@ std::vector<NamedTerm> velocity_quantities(const Model& model, const FirstOrderK
     const auto [least, greatest] = eigenvalue_range(V * V.transposed());
     const std::string unit = is_rotation == turns ? "1" : is_rotation ? "rad/m" : "m/rad";
     const std::string inverse_unit = is_rotation == turns ? "1" : is_rotation ? "m/rad" : "rad/m";
-    found.push_back(
-        {velocity, unit, "minimum " + velocity_text + " for joint speeds of norm 1", sqrt(least) / determinant});
-    found.push_back(
-        {force, inverse_unit, "minimum " + force_text + " for joint forces of norm 1", determinant / sqrt(greatest)});
+    found.push_back({velocity, unit, velocity_text + " in the slowest direction for joint speeds of norm 1",
+                     sqrt(least) / determinant});
+    found.push_back({force, inverse_unit, force_text + " in the weakest direction for joint forces of norm 1",
+                     determinant / sqrt(greatest)});
   };
-  add(kinematics.translation, "velocity_transmission", "force_transmission", "speed of the platform",
-      "force at the platform", false);
-  add(kinematics.rotation, "angular_velocity_transmission", "moment_transmission", "angular speed of the platform",
-      "moment at the platform", true);
+  add(kinematics.translation, "velocity_transmission", "force_transmission", "speed", "force", false);
+  add(kinematics.rotation, "angular_velocity_transmission", "moment_transmission", "angular speed", "moment", true);
   return found;
 }
 
