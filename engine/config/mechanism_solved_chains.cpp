@@ -365,7 +365,9 @@ void read_solved_limb(const LimbCopy& copy, const std::string& joint) {
     for (std::size_t j = 1; j < chain.joints; ++j) {
       const Vector3& link = chain.links[j - 1];
       if (draft.scope.at_default(dot(link, link)) == 0) continue;  // two joints at the same position
-      model.links.push_back({"link " + std::to_string(j) + " of " + copy.name,
+      const bool slides =
+          std::ranges::any_of(chain.axes, [&](const auto& axis) { return axis.joint == j && !axis.turns; });
+      model.links.push_back({(slides ? "telescopic link " : "link ") + std::to_string(j) + " of " + copy.name,
                              copy.name,
                              nodes(at.joints[j - 1]),
                              nodes(at.joints[j]),
