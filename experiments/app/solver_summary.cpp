@@ -86,6 +86,7 @@ std::string starts_text(const ProblemRecord& problem, const StageRecord& stage) 
   const std::string more = "  and " + std::to_string(order.size() - rows.size() + 1) + " more";
   const bool is_known = std::ranges::any_of(stage.starts, [](const auto& s) { return std::isfinite(s.optimality); });
   return aligned(rows) + (order.size() <= max_rows ? "" : more + (one ? ", none better\n" : "\n")) +
+         (is_known && one ? "    optimum: number of the local optimum reached; - if none was reached\n" : "") +
          (is_known ? "    KKT residual: relative improvement per full range of a variable, to first order; below " +
                          shortest(kMaxResidualOfOptimum) + " at an optimum\n"
                    : "");
