@@ -7,7 +7,9 @@ set(PKM_FILES_OF_RELEASE
   four_ppa_two_par/derivatives hybrid/breaks storage/h5py cli/changed_study cli/crr_cru cli/mechanism_file_study
   cli/expression cli/extension cli/golden cli/hybrid cli/messages cli/next_step cli/corrupted_file cli/outputs
   cli/compare cli/sensitivity cli/stop cli/tool_error cli/diagnosis generic/performance_numeric generic/edge_plan
-  four_ppa_two_par/slices four_ppa_two_par/clearance_survey generic/sample_nodes)
+  four_ppa_two_par/slices four_ppa_two_par/clearance_survey generic/sample_nodes cli/pareto_front cli/command_line
+  cli/completion cli/quantity cli/largest_solid cli/report cli/solver_study generic/fastest_motion config/choices
+  generic/bounds generic/corner_curves_volume)
 set(PKM_TESTS_OF_RELEASE
   CrrCruColumns CountsFromRows ColumnsAgree NoPoseIsNearer TakenApart VirtualWorkIsNewtonEuler
   DerivativesOfTheSmoothPeak DerivativesOfStatistics DerivativesOfMeans VoxelsConvergeToColumns EqualsNumericalSearch
@@ -72,6 +74,10 @@ set(PKM_TESTS_OF_RELEASE
   HomeColumns.OfSeveralComponentsInSpace HasTheEnergyOfItsTrajectory OfTenThousandPoses PublishedPosesAndSlices
   AreThoseOfSlices/2t1r DerivativesOfRobust GoldenQuinticMoves MarginsHaveTheSameNames LeastNormWithinLimits
   CentreIsTheStationaryPoint CliLargestSolid.HasAGiven OfFewBoxesAreCertified /Version5 /Version6 /Version7
+  ForceBalance.LargestBoxes ForceBalance.WrenchClosure Cables.CertifiedBoxes PublishedRobots.HaveForces
+  /file_cables /file_chains /file_frames OldStudies.AreShown OldStudiesOfOtherVersions Formula.RandomText
+  ExportProgram.AnEmpty ExportProgram.Handles ExportProgram.Workspace ExportProgram.WritesTables TheSixLegsOfAGough
+  Obstacles.AreRefused PageData.DeltaHas CertifiedVolumes.ArePrinted CliSlice.Fixing
   LiveProgram.Interrupted ContractedBox.Contains ContractedBox.DoesNot PageData.MotorQuantities PageData.DrivesHave
   PageData.MotionsInclude Obstacle.Reduces AnyJointWithAClosedForm Solve.Integrates Certify.Tampered
   FieldsOfAFineGrid Obstacles.AreNamed Orientations.MeasureOfACone OrientationWorkspace.OfACone DeviationBox.IsCertified
