@@ -280,7 +280,7 @@ type = "workspace-volume"
   expect_same_files({2, 3});
   expect_resumable_after_kills();
   const StudyContents alone = read("alone.h5");
-  EXPECT_EQ(run_on(2, {"run", "study.toml", "--output", "left.h5", "--quiet", "--time", "100ms"}), 3) << output_;
+  EXPECT_EQ(run_on(2, {"run", "study.toml", "--output", "left.h5", "--quiet", "--time", "10ms"}), 3) << output_;
   fs::remove(path("delta.toml"));
   EXPECT_EQ(run_on(3, {"resume", "left.h5", "--quiet"}), 0) << output_;
   EXPECT_EQ(first_difference(alone, read("left.h5")), "");
