@@ -153,12 +153,7 @@ TEST_P(MujocoMultibody, FindsJointPositionsAndHoldingForces) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Mechanisms, MujocoMultibody, testing::ValuesIn(test::multibody_cases()),
-                         [](const auto& tested) {
-                           std::string word = tested.param.name;
-                           std::ranges::replace(word, '-', '_');
-                           return word;
-                         });
+INSTANTIATE_TEST_SUITE_P(Mechanisms, MujocoMultibody, testing::ValuesIn(test::multibody_cases()), test::name_of_case);
 
 }  // namespace
 }  // namespace pkm

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,27 @@ struct MultibodyCase {
 inline void PrintTo(const MultibodyCase& tested, std::ostream* out) { *out << tested.name; }
 
 inline const std::vector<MultibodyCase>& multibody_cases() {
-  static const std::vector<MultibodyCase> list = {
-      {"rotary-delta"}, {"linear-delta"}, {"orthoglide"},   {"gough"},     {"3-rpr"},
-      {"3-rrr"},        {"3crr-r-cru"},   {"quadrupteron"}, {"4ppa-2par"}, {"five-bar", false}};
+  static const std::vector<MultibodyCase> list = {{"rotary-delta"},
+                                                  {"linear-delta"},
+                                                  {"orthoglide"},
+                                                  {"gough"},
+                                                  {"3-rpr"},
+                                                  {"3-rrr"},
+                                                  {"3crr-r-cru"},
+                                                  {"quadrupteron"},
+                                                  {"4ppa-2par"},
+                                                  {"five-bar", false},
+                                                  {"chains/tripteron"},
+                                                  {"chains/hexaglide"},
+                                                  {"chains/isoglide4-t3r1"}};
   return list;
+}
+
+inline std::string name_of_case(const ::testing::TestParamInfo<MultibodyCase>& tested) {
+  std::string word = tested.param.name;
+  std::ranges::replace_if(
+      word, [](char c) { return c == '-' || c == '/'; }, '_');
+  return word;
 }
 
 /// A mechanism with its nominal design, its reference pose, and values by the generic engine.

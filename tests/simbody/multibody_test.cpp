@@ -76,12 +76,7 @@ TEST_P(SimbodyMultibody, FindsJointPositionsAndDriveForces) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Mechanisms, SimbodyMultibody, testing::ValuesIn(test::multibody_cases()),
-                         [](const auto& tested) {
-                           std::string word = tested.param.name;
-                           std::ranges::replace(word, '-', '_');
-                           return word;
-                         });
+INSTANTIATE_TEST_SUITE_P(Mechanisms, SimbodyMultibody, testing::ValuesIn(test::multibody_cases()), test::name_of_case);
 
 }  // namespace
 }  // namespace pkm::simbody
