@@ -41,13 +41,15 @@ struct SampleDesigns {
   }
 };
 
-/// A design that hardly differs from `design`, and is a different one for each index, so that no results are taken from
-/// caches.
+/// A design within the bounds that hardly differs from `design`, and is a different one for each index, so that no
+/// results are taken from caches.
 std::vector<double> neighbour(const DesignSpace& space, std::span<const double> design, int index) {
   constexpr double kChange = 1e-9;  // relative to the range of each variable
   std::vector<double> changed(design.begin(), design.end());
-  for (std::size_t i = 0; i < changed.size(); ++i)
-    if (space[i].step == 0) changed[i] += index * kChange * (space[i].upper - space[i].lower);
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const double inward = changed[i] > (space[i].lower + space[i].upper) / 2 ? -1 : 1;
+    if (space[i].step == 0) changed[i] += inward * index * kChange * (space[i].upper - space[i].lower);
+  }
   return changed;
 }
 
