@@ -37,7 +37,7 @@ class LoopClosure {
   }
   /// Derivatives of f with respect to the coordinates, by forward-mode automatic differentiation in blocks of four.
   AxisMatrix<double> jacobian(const Pose<double>& pose) {
-    constexpr std::size_t kBlock = 4;
+    constexpr std::size_t kBlock = Dual4::kDerivatives;
     AxisMatrix<double> G(program_.outputs().size(), pose.size());
     for (std::size_t from = 0; from < pose.size(); from += kBlock) {
       const std::size_t count = std::min(kBlock, pose.size() - from);

@@ -54,6 +54,8 @@ struct alignas(16) Components {
 /// A dual number with N derivatives.
 template <int N>
 struct Dual {
+  static constexpr int kDerivatives = N;
+
   double a = 0;     ///< value
   Components<N> v;  ///< gradient: the N partial derivatives
 

@@ -7,7 +7,6 @@ namespace pkm {
 
 std::vector<DualMotionSample> sample_with_derivatives(const DesignMotion& motion, std::span<const Dual4> design,
                                                       std::size_t count) {
-  constexpr int kDirections = 4;      // number of derivatives of Dual4
   constexpr double kStep = 1e-4;      // step of the central differences, relative to the magnitude of the parameter
   constexpr double kSmallest = 0.01;  // magnitude [SI] that is assumed for a parameter with a smaller one, such as 0
   std::vector<double> values;
@@ -20,7 +19,7 @@ std::vector<DualMotionSample> sample_with_derivatives(const DesignMotion& motion
   std::vector<DualMotionSample> samples;
   for (const MotionSample& at : sample(*motion.at(values), count))
     samples.push_back({Dual4(at.time), at.pose, at.velocity, at.acceleration});
-  for (int k = 0; k < kDirections; ++k) {
+  for (int k = 0; k < Dual4::kDerivatives; ++k) {
     double step = std::numeric_limits<double>::infinity();
     for (const std::size_t i : motion.parameters)
       if (design[i].v[k] != 0)

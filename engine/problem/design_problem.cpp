@@ -171,7 +171,7 @@ Status DesignProblem::compute(std::span<const double> parameters, Scratch& scrat
 
 void DesignProblem::differentiate(std::span<const double> parameters, std::span<const std::size_t> by,
                                   std::span<double> derivatives, Scratch& scratch) const {
-  constexpr std::size_t kDirections = 4;  // number of derivatives of Dual4
+  constexpr std::size_t kBlock = Dual4::kDerivatives;
   Buffers& buffers = scratch.get<Buffers>();
   std::vector<Dual4>& all = buffers.duals;
   WorkspaceResults<double>& workspaces = buffers.workspaces;
@@ -181,8 +181,8 @@ void DesignProblem::differentiate(std::span<const double> parameters, std::span<
     evaluate_machines(parameters, by, scratch);
   else if (parts_.built)
     evaluate_machines(parameters, {}, scratch);
-  for (std::size_t first = 0; first < std::max<std::size_t>(by.size(), 1); first += kDirections) {
-    const std::size_t count = std::min(kDirections, by.size() - first);
+  for (std::size_t first = 0; first < std::max<std::size_t>(by.size(), 1); first += kBlock) {
+    const std::size_t count = std::min(kBlock, by.size() - first);
     all.assign(parameters.begin(), parameters.end());
     for (std::size_t k = 0; k < count; ++k) {
       all[by[first + k]].v[static_cast<int>(k)] = 1;

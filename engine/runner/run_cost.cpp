@@ -114,9 +114,8 @@ std::optional<double> exact_seconds(const Study& study, const std::vector<double
 /// Time of the sensitivities with respect to all parameters, which follow a stage with derivatives, relative to an
 /// evaluation with derivatives with respect to the variables.
 double relative_sensitivity_cost(const DesignProblem& problem) {
-  constexpr double kDirections = 4;  // number of derivatives that are computed together
   const auto passes = [](std::size_t parameters) {
-    return std::max(1.0, std::ceil(static_cast<double>(parameters) / kDirections));
+    return std::max(1.0, std::ceil(static_cast<double>(parameters) / Dual4::kDerivatives));
   };
   return passes(problem.parts().parameters.size()) / passes(problem.space().dimension());
 }
