@@ -16,7 +16,8 @@ constexpr double kBudget = 50e-3, kMaxCost = 0.5;
 
 // Approximate times of the parts of a workspace analysis [s]:
 constexpr double kVoxelCost = 0.1e-9;   // time for each voxel that is counted in batches
-constexpr double kSampleCost = 0.1e-6;  // time for each pose at which pose quantities are evaluated
+constexpr double kSampleCost = 0.1e-6;  // time for each voxel at which pose quantities are evaluated
+constexpr double kNodeCost = 1e-6;      // time for each node of a column at which pose quantities are evaluated
 // Time for each pose at which the full inverse kinematics or the distances between links are computed.
 constexpr double kKinematicsCost = 2e-6;
 constexpr double kDesignTestCost = 20e-6;  // time [s] for each constraint that depends on the design alone
@@ -34,8 +35,9 @@ double cost(const Mechanism& mechanism, const WorkspacePlan& plan, const FieldRe
         static_cast<double>(std::max({std::int64_t{1}, fixed.cells, static_cast<std::int64_t>(fixed.values.size())}));
   const bool is_cellwise = plan.voxels() && (!mechanism.voxels() || first_cellwise_field(request));
   const double each = is_cellwise || requires_clearance(mechanism.info(), plan) ? kKinematicsCost
-                      : request.needs_samples()                                 ? kSampleCost
-                                                                                : kVoxelCost;
+                      : !request.needs_samples()                                ? kVoxelCost
+                      : plan.voxels()                                           ? kSampleCost
+                                                                                : kNodeCost;
   return poses * each;
 }
 

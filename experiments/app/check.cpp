@@ -153,9 +153,10 @@ std::string probe_text(const Probe& probe) {
   std::string text = "\nprobe: " + describe_probe(probe) + '\n';
   if (!probe.diagnosis) return text;
   std::vector<Reason> reasons = probe.diagnosis->reasons;
-  std::erase_if(reasons, [](const Reason& reason) { return reason.kind == "contradiction"; });
-  return text + "note: " + probe.diagnosis->sentence + "; a run may still find feasible designs\n" +
-         reasons_text(reasons);
+  const bool contradicts =
+      std::erase_if(reasons, [](const Reason& reason) { return reason.kind == "contradiction"; }) > 0;
+  return text + "note: " + probe.diagnosis->sentence +
+         (contradicts ? "\n" : "; a run may still find feasible designs\n") + reasons_text(reasons);
 }
 
 void check_study(const Study& study, const CheckArguments& arguments, Session& session) {
