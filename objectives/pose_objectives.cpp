@@ -87,6 +87,10 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
                     " with statistic = \"p95\" is a quantile, which has none; use \"mean\", "
                     "\"max\" or \"std\"");
       },
+      .detail =
+          [statistic, meaning](const EntryContext& context) {
+            return statistic.empty() ? words_for(context.options.word("statistic")) + " of the " + meaning : meaning;
+          },
       .range = [&quantity, statistic](const EntryContext& context) -> Range {
         if ((statistic.empty() ? context.options.word("statistic") : statistic) != "std")
           return {quantity.lower, quantity.upper};

@@ -24,13 +24,6 @@ const PoseQuantity& quantity_of(const EntryContext& context) {
   return quantity;
 }
 
-/// A statistic in words, such as "minimum" or "5 % quantile".
-std::string words_for(const std::string& statistic) {
-  if (statistic[0] == 'p') return statistic.substr(1) + " % quantile";
-  if (statistic == "std") return "standard deviation";
-  return statistic == "mean" ? "mean" : statistic == "min" ? "minimum" : "maximum";
-}
-
 class QuantityStatistic final : public Quantity {
  public:
   explicit QuantityStatistic(const EntryContext& context)

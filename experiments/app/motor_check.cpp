@@ -39,7 +39,8 @@ void report_motor_check(const Target& target, const std::string& mode, const Tra
                                   {"dci", coupling},
                                   {"follows_the_motion", feasible}});
   }
-  out.add_table("motor check (reserve: capacity / demand; coupling index: mean of the largest over the samples)", rows);
+  out.add_table(
+      "motor check (reserve: capacity / demand; coupling index: largest of the drives, mean over the samples)", rows);
 }
 
 }  // namespace pkm

@@ -9,10 +9,11 @@ namespace {
 
 using generic::ToleranceViolation;
 
-/// Text of a tolerance in a unit that suits its size, rounded down: "+-0.1181 mm".
-std::string tolerance_text(double tolerance, const std::string& si_unit) {
+/// Text of a tolerance in the display unit: "+-0.1181 mm". What is certified is rounded down (direction -1), what is
+/// violated up (1).
+std::string tolerance_text(double tolerance, const std::string& si_unit, int direction) {
   const DisplayUnit unit = display_unit(si_unit);
-  return "+-" + directed_digits(tolerance / unit.size, significant_digits(), -1) +
+  return "+-" + directed_digits(tolerance / unit.size, significant_digits(), direction) +
          (unit.name == "1" ? "" : " " + unit.name);
 }
 
@@ -27,7 +28,7 @@ std::string value_text(double value, const std::string& si_unit) {
 void ToleranceReport::add_to(Printout& out) const {
   const MechanismInfo& info = target_.info();
   out.json["certified"] = by_name(found_.scale);
-  out.head.push_back({"certified", design_fails() ? "none" : text_of(found_.scale)});
+  out.head.push_back({"certified", design_fails() ? "none" : text_of(found_.scale, -1)});
   if (found_.violation) {
     const ToleranceViolation& violation = *found_.violation;
     out.json["violation"] = {{"what", violation.constraint},
@@ -36,13 +37,13 @@ void ToleranceReport::add_to(Printout& out) const {
                              {"pose", axes_json(info.coordinates, violation.pose)},
                              {"time", json_or_null(violation.time)}};
     out.head.push_back(
-        {"violation", (design_fails() ? "of the design itself: " : "at " + text_of(violation.scale) + ": ") +
+        {"violation", (design_fails() ? "of the design itself: " : "at " + text_of(violation.scale, 1) + ": ") +
                           violation.constraint + " at " +
                           (violation.time ? "t = " + number(*violation.time, "s") + ", " : "") +
                           axes_text(info.coordinates, violation.pose)});
   } else {
     out.json["violation"] = nullptr;
-    out.head.push_back({"violation", "none was found up to " + text_of(found_.largest_scale)});
+    out.head.push_back({"violation", "none was found up to " + text_of(found_.largest_scale, -1)});
   }
   if (design_fails()) return;
   out.json["singularities"] = found_.no_singularities ? "not examined" : "none";
@@ -55,7 +56,7 @@ void ToleranceReport::add_to(Printout& out) const {
     const Parameter& parameter = info.parameters[proportions_.parameters[i]];
     const double value = target_.parameters[proportions_.parameters[i]];
     rows.push_back({parameter.name, value_text(value, parameter.unit),
-                    tolerance_text(tolerance(i, found_.scale), parameter.unit)});
+                    tolerance_text(tolerance(i, found_.scale), parameter.unit, -1)});
     if (found_.violation)
       rows.back().push_back(value_text(found_.violation->parameters[proportions_.parameters[i]], parameter.unit));
   }
@@ -86,9 +87,9 @@ std::string ToleranceReport::shortfall(double gap, std::int64_t max_boxes) const
   return "the requested gap cannot be reached: the remaining boxes cannot be decided in double precision";
 }
 
-std::string ToleranceReport::text_of(double scale) const {
+std::string ToleranceReport::text_of(double scale, int direction) const {
   const auto text = [&](std::size_t i) {
-    return tolerance_text(tolerance(i, scale), target_.info().parameters[proportions_.parameters[i]].unit);
+    return tolerance_text(tolerance(i, scale), target_.info().parameters[proportions_.parameters[i]].unit, direction);
   };
   for (std::size_t i = 1; i < proportions_.parameters.size(); ++i)
     if (text(i) != text(0)) return relative_text(scale);

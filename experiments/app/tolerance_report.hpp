@@ -26,8 +26,8 @@ class ToleranceReport {
   /// The tolerance of parameter i at a scale [SI], rounded down.
   double tolerance(std::size_t i, double scale) const { return rounding::product_down(scale, proportions_.sizes[i]); }
   /// Text of the tolerances at a scale: a number if all are equal, otherwise a factor that multiplies the tolerances in
-  /// the printed table.
-  std::string text_of(double scale) const;
+  /// the printed table; rounded down (direction -1) or up (1).
+  std::string text_of(double scale, int direction) const;
   std::string relative_text(double scale) const;
   Json by_name(double scale) const;
 

@@ -274,7 +274,7 @@ void report_workspace(const Target& target, const WorkspaceFields& workspace, co
     if (range && field.name != "feasible")
       rows.push_back({field.name, number(range->least, unit), number(range->greatest, unit), field.meaning});
   }
-  std::string title = "fields over the feasible cells (the margin over all cells)";
+  std::string title = "fields: minimum and maximum over the feasible cells (of the smallest margin: over all cells)";
   if (of_fields.cells() != workspace.cells()) {
     std::vector<std::string> cells;
     for (const WorkspaceAxis& axis : of_fields.axes) cells.push_back(std::to_string(axis.cells));
