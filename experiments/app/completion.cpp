@@ -86,12 +86,17 @@ _)" << name << R"shell(_names() {  # names of the robot on the command line, pri
     found=$("${COMP_WORDS[0]}" completion "$1" "$robot" 2> /dev/null) && break
   done
   compopt -o nospace
-  COMPREPLY=($(compgen -W "$found" -- "$word"))
+  local given=''  # what precedes the last name of a list: a=1,b=2,
+  [[ $word == *,* ]] && given=${word%,*},
+  COMPREPLY=($(compgen -P "$given" -W "$found" -- "${word#"$given"}"))
 }
 _)shell" << name
             << R"(() {
-  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]}
+  local word=${COMP_WORDS[COMP_CWORD]} option=$((COMP_CWORD - 1))
   COMPREPLY=()
+  while [[ $option -gt 2 && ${COMP_WORDS[option]} == = ]]; do ((option -= 2)); done  # bash divides a=1,b=2 at each =
+  [[ $option -lt $((COMP_CWORD - 1)) && $word != *,* ]] && return  # the value of a name
+  local before=${COMP_WORDS[option]}
   if ((COMP_CWORD == 1)); then
     COMPREPLY=($(compgen -W )"
             << in_quotes(names + " help --help --version") << R"( -- "$word"))
@@ -144,6 +149,7 @@ void print_zsh(const std::vector<DeclaredCommand>& commands, const Session& sess
     found=(${(f)"$()shell"
             << session.program << R"shell( completion $1 $robot 2> /dev/null)"}) && (( $#found )) && break
   done
+  compset -P '*,'
   compadd -S '' -- $found
 }
 local -a commands=(
@@ -193,10 +199,11 @@ void print_fish(const std::vector<DeclaredCommand>& commands, const Session& ses
   const std::string begin = "complete -c " + session.program;
   std::cout << "# Completion for fish, printed by '" << session.program << " completion fish'.\n"
             << "function __" << session.program << R"(_names  # names of the robot on the command line
+  set -l given (commandline -ct | string replace -r '[^,]*$' '')  # what precedes the last name of a list
   for robot in (commandline -opc)[3..-1]
     string match -q -- '-*' $robot; and continue
     )" << session.program
-            << R"( completion $argv[1] $robot 2> /dev/null; and return
+            << R"( completion $argv[1] $robot 2> /dev/null | string replace -r '^' "$given"; and return
   end
 end
 function __)"

@@ -64,6 +64,10 @@ TEST(Completion, BashOffersNamesOfParametersAndLimits) {
                 UnorderedElementsAre("l_u=", "l_d="));
     EXPECT_THAT(offered({PKM_PROGRAM, "pose", robot, "--limit", "beta"}, folder.path()),
                 UnorderedElementsAre("beta_min=", "beta_max="));
+    // bash divides a=1,b=2,l_ into words at each =
+    EXPECT_THAT(offered({PKM_PROGRAM, "evaluate", robot, "--set", "a", "=", "1,b", "=", "2,l_"}, folder.path()),
+                UnorderedElementsAre("2,l_u=", "2,l_d="));
+    EXPECT_THAT(offered({PKM_PROGRAM, "evaluate", robot, "--set", "a", "=", "1"}, folder.path()), ElementsAre(""));
   }
   EXPECT_THAT(offered({PKM_PROGRAM, "evaluate", "none.toml", "--set", ""}, folder.path()), ElementsAre(""));
 }
@@ -113,24 +117,27 @@ TEST(Completion, FishCompletesCommandsOptionsNamesAndFiles) {
   EXPECT_THAT(completed("pkmopt new me"), ElementsAre("mechanism"));
   EXPECT_THAT(completed("pkmopt evaluate 4ppa-2par --set l_"), UnorderedElementsAre("l_u=", "l_d="));
   EXPECT_THAT(completed("pkmopt pose 4ppa-2par --limit beta"), UnorderedElementsAre("beta_min=", "beta_max="));
+  EXPECT_THAT(completed("pkmopt evaluate 4ppa-2par --set a=1,b=2,l_"),
+              UnorderedElementsAre("a=1,b=2,l_u=", "a=1,b=2,l_d="));
 }
 
 TEST(Completion, ZshCompletesCommandsOptionsNamesAndFiles) {
   const std::string zsh = "/usr/bin/zsh";
   if (!std::filesystem::exists(zsh)) GTEST_SKIP() << "zsh is not installed";
   const FilesToComplete folder;
-  const auto result = run_program(
-      {zsh, "-f", PKM_TEST_DATA "/../cli/zsh_completion.zsh", PKM_PROGRAM, "pkmopt re", "pkmopt --ver",
-       "pkmopt help sim", "pkmopt run --liv", "pkmopt show ", "pkmopt pose 3cr", "pkmopt new ", "pkmopt new study 3cr",
-       "pkmopt evaluate 4ppa-2par --set l_", "pkmopt pose 4ppa-2par --limit beta_mi"},
-      folder.path());
+  const auto result =
+      run_program({zsh, "-f", PKM_TEST_DATA "/../cli/zsh_completion.zsh", PKM_PROGRAM, "pkmopt re", "pkmopt --ver",
+                   "pkmopt help sim", "pkmopt run --liv", "pkmopt show ", "pkmopt pose 3cr", "pkmopt new ",
+                   "pkmopt new study 3cr", "pkmopt evaluate 4ppa-2par --set l_",
+                   "pkmopt pose 4ppa-2par --limit beta_mi", "pkmopt evaluate 4ppa-2par --set a=1,b=2,lambda_u"},
+                  folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   // The matches are listed before the line, if there are several.
   for (const char* const expected :
        {"report  -- Write the results", "resume  -- Resume a stopped study", "[pkmopt re]", "[pkmopt --version ]",
         "[pkmopt help simulate ]", "[pkmopt run --live ]", "b.h5     deeper/", "[pkmopt pose 3crr-r-cru ]",
-        "mechanism  study", "[pkmopt new study 3crr-r-cru ]",
-        "l_d=  l_u=", "[pkmopt pose 4ppa-2par --limit beta_min=]"})
+        "mechanism  study", "[pkmopt new study 3crr-r-cru ]", "l_d=  l_u=", "[pkmopt pose 4ppa-2par --limit beta_min=]",
+        "[pkmopt evaluate 4ppa-2par --set a=1,b=2,lambda_u=]"})
     EXPECT_THAT(result.out, HasSubstr(expected));
   EXPECT_THAT(result.out, Not(HasSubstr("_arguments")));  // an error message of zsh
 }
