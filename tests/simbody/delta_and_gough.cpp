@@ -10,7 +10,7 @@ namespace {
 using SimTK::MobilizedBody, SimTK::Transform, SimTK::Vec3;
 
 /// The frame with the given x and z axes.
-SimTK::Rotation axes(const Vec3& x, const Vec3& z) {
+SimTK::Rotation axes_x_z(const Vec3& x, const Vec3& z) {
   return {SimTK::UnitVec3(x), SimTK::XAxis, SimTK::UnitVec3(z), SimTK::ZAxis};
 }
 
@@ -61,8 +61,9 @@ struct DeltaOrGough::Delta : Model {
     for (int i = 0; i < 3; ++i) {
       const SimTK::Rotation turned(2 * SimTK::Pi * i / 3, SimTK::ZAxis);
       // the z axis of the crank frame points along the crank, the x axis is the axis of rotation
-      const SimTK::Rotation outwards = turned * axes(Vec3(0, 1, 0), Vec3(1, 0, 0));
-      const SimTK::Rotation pin = axes(Vec3(0, 0, 1), Vec3(1, 0, 0));  // a Pin rotates about its z axis: x of the crank
+      const SimTK::Rotation outwards = turned * axes_x_z(Vec3(0, 1, 0), Vec3(1, 0, 0));
+      const SimTK::Rotation pin =
+          axes_x_z(Vec3(0, 0, 1), Vec3(1, 0, 0));  // a Pin rotates about its z axis: x of the crank
       crank.push_back(MobilizedBody::Pin(matter.Ground(), Transform(outwards * pin, turned * Vec3(p.R, 0, 0)),
                                          thin(p.crank_mass, p.l_a / 2, p.crank_inertia), Transform(pin)));
       rod.push_back(MobilizedBody::Universal(crank.back(), Transform(Vec3(0, 0, p.l_a)),
@@ -83,7 +84,7 @@ struct DeltaOrGough::Delta : Model {
       const double q = std::atan2(w, u) - std::acos(k / std::hypot(u, w));  // elbow outwards
       crank[i].setOneQ(state, 0, q);
       // frame of the crank at q: z is (cos q, 0, -sin q), x is y of the limb
-      const SimTK::Rotation at_crank = axes(Vec3(0, 1, 0), Vec3(std::cos(q), 0, -std::sin(q)));
+      const SimTK::Rotation at_crank = axes_x_z(Vec3(0, 1, 0), Vec3(std::cos(q), 0, -std::sin(q)));
       point(rod[i], state, ~at_crank * (v - p.l_a * Vec3(std::cos(q), 0, -std::sin(q))));
     }
     return state;
