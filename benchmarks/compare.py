@@ -38,10 +38,9 @@ def read(path):
         with open(path, encoding="utf-8") as file:
             result = json.load(file)
         times = repetitions(result)
-    except UnicodeDecodeError:
-        sys.exit(f"{path}: not a text file; expected two programs, or two results of Google Benchmark (--benchmark_out)")
     except (OSError, ValueError, KeyError) as error:
-        sys.exit(f"{path}: {error!r}; expected a program, or a result of Google Benchmark (--benchmark_out)")
+        sys.exit(f"{path}: {type(error).__name__}: {error}; expected two programs, or two results of Google Benchmark "
+                 "(--benchmark_out)")
     if not times:
         sys.exit(f"{path}: no repetitions of benchmarks; expected a result without --benchmark_report_aggregates_only")
     return times, result.get("context", {}).get("host_name", "?")
