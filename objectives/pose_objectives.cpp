@@ -89,7 +89,8 @@ ObjectiveEntry entry(const PoseQuantity& quantity, const std::string& name, cons
       },
       .detail =
           [statistic, meaning](const EntryContext& context) {
-            return statistic.empty() ? words_for(context.options.word("statistic")) + " of the " + meaning : meaning;
+            return statistic.empty() ? statistic_in_words(context.options.word("statistic")) + " of the " + meaning
+                                     : meaning;
           },
       .range = [&quantity, statistic](const EntryContext& context) -> Range {
         if ((statistic.empty() ? context.options.word("statistic") : statistic) != "std")

@@ -79,7 +79,7 @@ ObjectiveEntry quantity_objective() {
           [](const EntryContext& context) {
             const PoseQuantity& quantity = quantity_of(context);
             const std::string name = quantity.name, meaning = quantity.meaning;
-            return words_for(context.options.word("statistic")) + " of " + name + " over the workspace" +
+            return statistic_in_words(context.options.word("statistic")) + " of " + name + " over the workspace" +
                    (meaning == name ? "" : ": " + meaning);
           },
       .range = [](const EntryContext& context) -> Range {

@@ -63,7 +63,7 @@ const std::vector<S>& reduced_field(const WorkspaceResult<S>& workspace, const P
 }
 
 /// A statistic in words, such as "minimum" or "5 % quantile".
-inline std::string words_for(const std::string& statistic) {
+inline std::string statistic_in_words(const std::string& statistic) {
   if (statistic[0] == 'p') return statistic.substr(1) + " % quantile";
   if (statistic == "std") return "standard deviation";
   return statistic == "mean" ? "mean" : statistic == "min" ? "minimum" : "maximum";
