@@ -187,7 +187,7 @@ std::vector<OldStudy> studies(bool of_this_version) {
 INSTANTIATE_TEST_SUITE_P(Every, OldStudies, ::testing::ValuesIn(kOldStudies), name_of_version);
 INSTANTIATE_TEST_SUITE_P(Every, OldStudiesOfEverySchema,
                          ::testing::Values(kOldStudies[0], kOldStudies[1], kOldStudies[2], kOldStudies[3],
-                                           kOldStudies[8]),
+                                           *std::rbegin(kOldStudies)),
                          name_of_version);
 INSTANTIATE_TEST_SUITE_P(Refused, OldStudiesOfOtherVersions, ::testing::ValuesIn(studies(false)), name_of_version);
 INSTANTIATE_TEST_SUITE_P(Resumed, OldStudiesOfThisVersion, ::testing::ValuesIn(studies(true)), name_of_version);
