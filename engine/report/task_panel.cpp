@@ -33,7 +33,11 @@ Json task_motion_json(const TaskMotion& motion, std::size_t axes) {
 }
 
 Json compared_robot_json(const ComparedRobot& robot, std::size_t axes) {
-  Json json = {{"name", robot.name}, {"verdict", robot.verdict()}, {"values", Json::array()}};
+  const std::optional<bool> performs = robot.performs_task();
+  Json json = {{"name", robot.name},
+               {"performs", performs ? Json(*performs) : Json()},
+               {"verdict", robot.verdict()},
+               {"values", Json::array()}};
   for (const TaskValue& line : robot.values) json["values"].push_back(value_json(line));
   json["motions"] = Json::array();
   for (const TaskMotion& motion : robot.motions) json["motions"].push_back(task_motion_json(motion, axes));

@@ -236,6 +236,12 @@ bool ComparedRobot::has_requirements() const {
   return std::ranges::any_of(values, [](const TaskValue& line) { return line.required.has_value(); });
 }
 
+std::optional<bool> ComparedRobot::performs_task() const {
+  const TaskValue* const line = violated();
+  if (!has_requirements() || (line && std::isnan(line->value))) return {};
+  return line == nullptr;
+}
+
 std::string ComparedRobot::verdict() const {
   if (const TaskValue* const line = violated())
     return std::isnan(line->value) ? "unknown: " + line->name : "no: " + line->name;

@@ -47,6 +47,8 @@ struct ComparedRobot {
   const TaskValue* violated() const;
   /// Returns true if the task has a value that the robot must reach.
   bool has_requirements() const;
+  /// Whether the robot can perform the task; std::nullopt if this is unknown, or the task has no requirements.
+  std::optional<bool> performs_task() const;
   /// Whether the robot can perform the task, as text: "yes", "no: bin: margin", "unknown: ..", or "the task has no
   /// requirements".
   std::string verdict() const;

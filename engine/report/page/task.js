@@ -19,8 +19,8 @@ function taskTable(task) {
     .map((name, k) => [name, task.robots.map((robot) => robot.values[k])])
     .filter(([, values]) => values.some(({ value }) => value !== null))
     .map(([name, values]) => [name, ...values.map(taskCell)]);
-  const verdicts = task.robots.map(({ verdict }) =>
-    element("span", verdict === "yes" ? "better" : verdict.startsWith("no") ? "worse" : "", verdict),
+  const verdicts = task.robots.map(({ performs, verdict }) =>
+    element("span", performs === null ? "" : performs ? "better" : "worse", verdict),
   );
   const box = element("div", "box", element("h3", "", "All values"), simpleTable(head, [["does the task", ...verdicts], ...rows]));
   const missing = new Map(); // values by robots and reason
@@ -210,7 +210,7 @@ function addTaskCurves(task, grid) {
 }
 
 function showTask(task, panel) {
-  const doing = task.robots.filter(({ verdict }) => verdict === "yes").map(({ name }) => name);
+  const doing = task.robots.filter(({ performs }) => performs).map(({ name }) => name);
   panel.append(
     element(
       "p",
