@@ -96,21 +96,25 @@ std::string optimality_text(const ProblemRecord& problem, const StageRecord& sta
   if (!stage.optimality) return "";
   const OptimalityRecord& record = *stage.optimality;
   const ObjectiveInfo& objective = problem.objectives[0];
-  const std::string of = objective.name + (objective.unit == "1" ? "" : " [" + objective.unit + "]");
+  // Rates have the unit in which the objective of the stage's best design is printed.
+  const double best = stage.best_row < 0 ? 1 : stage.table.objective_row(static_cast<std::size_t>(stage.best_row))[0];
+  const auto [size, unit] = result_unit(objective.unit, best);
+  const auto rate = [size = size](double value, const std::string& per) {
+    return value * display_unit(per).size / size;
+  };
+  const std::string of = objective.name + (unit == "1" ? "" : " [" + unit + "]");
   std::string text = "first-order optimality (KKT residual) " + formatted("%.1e", record.optimality) + "; below " +
                      shortest(kMaxResidualOfOptimum) + " at an optimum\n";
   if (!record.active.empty()) {
     std::vector<Row> rows = {{"", "", "per unit", "multiplier"}};
     for (const ActiveRecord& a : sorted_within_units(record.active, [](const ActiveRecord& a) { return a.multiplier; }))
-      rows.push_back({a.name, a.kind, display_unit(a.unit).name, digits(a.multiplier * display_unit(a.unit).size)});
+      rows.push_back({a.name, a.kind, display_unit(a.unit).name, digits(rate(a.multiplier, a.unit))});
     text += format_titled_table("active constraints, and the gain of " + of + " if they are relaxed", rows);
   }
   std::vector<Row> rows = {{"", "", "per unit", "others fixed", "reoptimised"}};
   for (const SensitivityRecord& s : sorted_within_units(without_residuals(record.sensitivities), influence)) {
     const bool varies = std::isnan(s.reoptimised);
-    const auto text_of = [size = display_unit(s.unit).size](double value) {
-      return value == 0 ? "0" : signed_digits(value * size);
-    };
+    const auto text_of = [&](double value) { return value == 0 ? "0" : signed_digits(rate(value, s.unit)); };
     rows.push_back({s.parameter, varies ? "varies" : "fixed", display_unit(s.unit).name, text_of(s.as_built),
                     varies ? "" : text_of(s.reoptimised)});
   }

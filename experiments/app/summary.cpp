@@ -193,7 +193,8 @@ std::string summary_text(const StudyContents& contents, const Study& study, cons
   if (final.best->touches_box)
     out << "warning: feasible cells of the best design touch the box; a larger box may contain more workspace\n";
   for (const auto& r : study.references)
-    if (r.seconds) out << printable(r.name) << " took " << duration_text(*r.seconds) << '\n';
+    if (r.seconds)
+      out << "published computing time of " << printable(r.name) << ": " << duration_text(*r.seconds) << '\n';
   if (diagnosis)
     out << "diagnosis: " << diagnosis->finding << ": " << diagnosis->sentence << '\n'
         << reasons_text(diagnosis->reasons);
