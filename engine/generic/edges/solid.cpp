@@ -338,7 +338,9 @@ class Evaluator {
       gaps[index(range, 1)] += chord * -range.sign;
     }
     for (const Vector3& gap : gaps) result_.gap = std::max(result_.gap, largest(gap));
-    constexpr double kClosed = 1e-9;
+    // Where surfaces touch, as those of limbs with a common axis of symmetry do, the ends of edges are known to the
+    // square root of the rounding errors. Gap and undecided length are part of the error.
+    constexpr double kClosed = 1e-7;
     if (result_.gap > kClosed * size_ || undecided_ > kClosed * powers_[3]) result_.is_closed = false;
   }
 
