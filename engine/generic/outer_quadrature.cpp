@@ -8,8 +8,6 @@
 namespace pkm::generic {
 namespace {
 
-// If the tolerance is at least this, the subdivision begins with a single subinterval.
-constexpr double kCoarse = 1e-5;
 constexpr std::size_t kMaxCells = 100;
 
 /// Adds factor() times the gradient of the first output of a program with a single stage to the derivatives by input.
@@ -49,29 +47,37 @@ Integral<double> OuterQuadrature::measure(std::size_t level, std::vector<double>
   if (!(width > 0)) return {};
   std::vector<OuterCell> cells;
   Integral<double> sum;
-  const NestedRule& rule = kronrod_rule();
-  const NestedRule::Level& weights = rule.level.front();
-  std::vector<double> by_input_there(by_input.size());
+  const NestedRule& rule = patterson_rule();
+  std::array<double, NestedRule::kNodes> term, error_term;
+  std::array<std::vector<double>, NestedRule::kNodes> by_input_at;
   const auto integrate = [&](OuterCell& cell) {
-    cell.value = cell.inner_error = 0;
-    cell.by_input.assign(by_input.size(), 0);
-    std::array<double, NestedRule::kNodes> term;
-    for (std::size_t i = 0; i < NestedRule::kNodes; ++i) {
-      const auto [point, jacobian] = map_node(cell.interval, rule.node[i]);
-      std::ranges::fill(by_input_there, 0);
-      const Integral<double> found = at(level, point, inputs, by_input_there, inner);
-      const double weight = jacobian * weights.weight[i];
-      term[i] = jacobian * found.value;
-      cell.value += weight * found.value;
-      cell.inner_error += weight * found.error;
-      sum.evaluations += found.evaluations;
-      for (std::size_t k = 0; k < by_input.size(); ++k) cell.by_input[k] += weight * by_input_there[k];
+    std::size_t known = 0;
+    for (const NestedRule::Level& weights : rule.level) {
+      for (; known < weights.nodes; ++known) {
+        const auto [point, jacobian] = map_node(cell.interval, rule.node[known]);
+        by_input_at[known].assign(by_input.size(), 0);
+        const Integral<double> found = at(level, point, inputs, by_input_at[known], inner);
+        term[known] = jacobian * found.value;
+        error_term[known] = jacobian * found.error;
+        for (double& each : by_input_at[known]) each *= jacobian;
+        sum.evaluations += found.evaluations;
+      }
+      cell.value = cell.inner_error = 0;
+      cell.by_input.assign(by_input.size(), 0);
+      for (std::size_t i = 0; i < known; ++i) {
+        cell.value += weights.weight[i] * term[i];
+        cell.inner_error += weights.weight[i] * error_term[i];
+        for (std::size_t k = 0; k < by_input.size(); ++k) cell.by_input[k] += weights.weight[i] * by_input_at[i][k];
+      }
+      cell.error = rule_error(weights, term, cell.value);
+      // Where the first nodes find no workspace, the others look for it, too.
+      if (cell.value > 0 && cell.error <= tolerance_ * cell.value) break;
     }
-    cell.error = rule_error(weights, term, cell.value);
   };
-  const int first_cells = tolerance_ >= kCoarse ? 1 : 2;
-  for (int i = 0; i < first_cells; ++i) {
-    cells.push_back({{range.lower + width * i / first_cells, range.lower + width * (i + 1) / first_cells}});
+  // Many mechanisms are symmetric about the middle of the range, where their volumes may have a kink.
+  const double middle = range.lower + 0.5 * width;
+  for (const Subinterval<double>& half : {Subinterval<double>{range.lower, middle}, {middle, range.upper}}) {
+    cells.push_back({half});
     integrate(cells.back());
   }
   while (true) {

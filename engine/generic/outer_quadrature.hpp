@@ -1,4 +1,4 @@
-// Adaptive Gauss-Kronrod quadrature (QUADPACK) for volumes over more than three coordinates: the integrand is the
+// Adaptive Gauss-Patterson quadrature for volumes over more than three coordinates: the integrand is the
 // volume over three inner coordinates as a function of the outer ones. This function is smooth except where parts of
 // the workspace begin or end: there the subdivision becomes finer. A workspace that all nodes miss is not found.
 #pragma once
