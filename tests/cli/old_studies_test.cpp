@@ -38,7 +38,8 @@ const OldStudy kOldStudies[] = {{"interrupted-schema-1", 1, "0.1.0 (259d3de3a709
                                 {"interrupted-algorithms-6", 6, "0.1.0 (ae5686c4cc35)", {"nsga2", "nlopt"}},
                                 {"interrupted-algorithms-7", 7, "0.1.0 (4db1aebb6315+changes)", {"nsga2", "nlopt"}},
                                 {"interrupted-algorithms-8", 8, "0.1.0 (8d634649c855+changes)", {"nsga2", "nlopt"}},
-                                {"interrupted-algorithms-9", 9, "0.1.0 (ae6b4170b257)", {"nsga2", "nlopt"}}};
+                                {"interrupted-algorithms-9", 9, "0.1.0 (ae6b4170b257)", {"nsga2", "nlopt"}},
+                                {"interrupted-algorithms-10", 10, "0.2.0 (414ccd7fc445+changes)", {"nsga2", "nlopt"}}};
 
 class OldStudies : public StudyProgram, public ::testing::WithParamInterface<OldStudy> {
  protected:
@@ -173,7 +174,7 @@ TEST_P(OldStudiesOfThisVersion, ResumedGiveTheResultOfTheOriginalProgram) {
 }
 
 std::string name_of_version(const ::testing::TestParamInfo<OldStudy>& info) {
-  return "Version" + info.param.name.substr(info.param.name.size() - 1);
+  return "Version" + std::to_string(info.param.algorithms);
 }
 
 /// The studies of this program's algorithm version, or the others.
