@@ -9,12 +9,15 @@ using Matrix = std::array<Samples, kNodes>;
 
 /// Value of the Chebyshev polynomial T_k at the node with index n, if there are `nodes` nodes.
 double polynomial_at_node(std::size_t k, std::size_t n, std::size_t nodes) {
+  const std::size_t quarters = k * (2 * n + 1);  // of a revolution, times `nodes`: the angle
+  if (kNodes % nodes != 0)
+    return portable::cos(kPi * static_cast<double>(quarters % (4 * nodes)) / (2.0 * static_cast<double>(nodes)));
   static const std::array<double, 4 * kNodes> cosines = [] {
     std::array<double, 4 * kNodes> all;
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = portable::cos(kPi * static_cast<double>(i) / (2.0 * kNodes));
     return all;
   }();
-  return cosines[k * (2 * n + 1) * (kNodes / nodes) % cosines.size()];
+  return cosines[quarters * (kNodes / nodes) % cosines.size()];
 }
 
 /// Row k contains the Chebyshev coefficients of T_k on [0, 1] as a function of x in [-1, 1]: T_(k+1)(y) = 2 y T_k(y) -
@@ -70,8 +73,8 @@ void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samp
         table[k][n] = polynomial_at_node(k, n, count) * (k == 0 ? 1.0 : 2.0) / static_cast<double>(count);
     return table;
   };
-  static const Matrix small = table_of(8), medium = table_of(16), large = table_of(kNodes);
-  const Matrix& table = nodes == 8 ? small : nodes == 16 ? medium : large;
+  static const std::array<Matrix, 4> tables{table_of(8), table_of(16), table_of(24), table_of(kNodes)};
+  const Matrix& table = tables[nodes / 8 - 1];
   by_values.fill(0);
   for (std::size_t k = 0; k < nodes; ++k)
     for (std::size_t n = 0; n < nodes; ++n) by_values[n] += by_coefficients[k] * table[k][n];

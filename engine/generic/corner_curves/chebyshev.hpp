@@ -25,11 +25,11 @@ const Samples& chebyshev_nodes();
 /// Computes the coefficients of the Chebyshev series that has the given values at the nodes.
 void to_coefficients(const Samples& values, Samples& coefficients);
 
-/// Coordinate in [-1, 1] of the Chebyshev node with index n, if there are `nodes` nodes (8, 16 or kNodes).
+/// Coordinate in [-1, 1] of the Chebyshev node with index n, if there are `nodes` nodes (8, 16, 24 or kNodes).
 double chebyshev_node(std::size_t n, std::size_t nodes);
 
 /// Converts derivatives of a quantity with respect to Chebyshev coefficients to its derivatives with respect to values
-/// at `nodes` nodes (8, 16 or kNodes), by the transpose of the interpolation. Valid for functions for which `nodes`
+/// at `nodes` nodes (8, 16, 24 or kNodes), by the transpose of the interpolation. Valid for functions for which `nodes`
 /// coefficients are sufficient.
 void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samples& by_values);
 

@@ -47,14 +47,20 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   // need more.
   std::size_t terms = 1;
   for (const BoundaryCurve& curve : segment.slices.curves) terms = std::max(terms, curve.terms);
-  const std::size_t nodes = terms <= 4 ? 8 : terms <= 14 ? 16 : kNodes;
+  const std::size_t nodes = terms <= 4 ? 8 : terms <= 14 ? 16 : terms <= 22 ? 24 : kNodes;
   add_adjoints(segment.integral, nodes, by_curve);
   Samples by_values;
-  for (std::size_t i = 0; i < segment.slices.curves.size(); ++i)
+  scratch.is_active.assign(segment.slices.curves.size(), false);
+  for (const ActiveRange& range : segment.integral.decomposition.ranges)
+    for (const std::size_t i : {range.first, range.second})
+      if (i < scratch.is_active.size()) scratch.is_active[i] = true;
+  for (std::size_t i = 0; i < segment.slices.curves.size(); ++i) {
+    if (!scratch.is_active[i]) continue;
     for (Samples& each : std::span(by_curve[i]).first(segment.slices.curves[i].is_conic() ? 6 : 3)) {
       transpose_to_values(each, nodes, by_values);
       each = by_values;
     }
+  }
   auto& registers = scratch.segments.registers;
   LimitScratch& limits = scratch.segments.limits;
   const OuterRange& range = segment.integral.outer;
@@ -82,14 +88,16 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
   const auto& registers = scratch.segments.registers;
   const Frame& frame = segment.slices.frame;
   for (std::size_t i = 0; i < segment.slices.curves.size(); ++i) {
-    const CurveAt curve = segment.slices.curves[i].at(tau);
+    if (!scratch.is_active[i]) continue;
+    const BoundaryCurve& curve = segment.slices.curves[i];
+    const auto value = [&](std::size_t k) { return evaluate_series(curve.series[k].data(), curve.terms, tau); };
     const CurveSource& source = segment.slices.sources[i];
     const auto& by = scratch.by_curve[i];
     // The curve is given in the coordinates of the frame, in which an area equals the area in (v, z) divided by
     // scale^2.
     const double u = frame.scale * by[0][node], w = frame.scale * by[1][node], c = by[2][node];
     if (source.kind == Kind::limit) {
-      add_limit_gradient(source.surface, frame.v - frame.scale * curve.c, -frame.scale * c, scratch);
+      add_limit_gradient(source.surface, frame.v - frame.scale * value(2), -frame.scale * c, scratch);
       continue;
     }
     if (source.kind == Kind::v_bound) {
@@ -103,7 +111,7 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
         // With the coefficients c0 .. c3 of the surface, the circle has the centre (-c1/(2 c3), -c2/(2 c3)) and the
         // squared radius |centre|^2 - c0/c3.
         const double c3 = registers[at[3]];
-        const double v = frame.v + frame.scale * curve.u, z = frame.z + frame.scale * curve.w;
+        const double v = -0.5 * registers[at[1]] / c3, z = -0.5 * registers[at[2]] / c3;
         const double square = v * v + z * z - registers[at[0]] / c3;
         add(0, -c / c3);
         add(1, -(0.5 * u + c * v) / c3);
@@ -132,9 +140,9 @@ void Volume::add_node_gradient(const Segment& segment, std::size_t node, double 
       }
       case Kind::lower_root:
       case Kind::upper_root: {
-        const bool along_v = std::fabs(curve.u) > 0.5;
+        const bool along_v = std::fabs(value(0)) > 0.5;
         const std::size_t linear = along_v ? 1 : 2, square = along_v ? 3 : 5;
-        const double root = (along_v ? frame.v : frame.z) - frame.scale * curve.c;
+        const double root = (along_v ? frame.v : frame.z) - frame.scale * value(2);
         const double by_root = registers[at[linear]] + 2 * root * registers[at[square]];
         const double adjoint = frame.scale * c / by_root;
         add(0, adjoint);

@@ -11,6 +11,7 @@ class Volume {
   struct Scratch {
     SegmentScratch segments;
     std::vector<CurveAdjoints> by_curve;
+    std::vector<bool> is_active;  ///< for each boundary curve of a segment, whether a vertex lies on it
     std::vector<double> adjoints, own;
 
     /// Amount of work of the last measure(), in an arbitrary unit that does not depend on the computer.
