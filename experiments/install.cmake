@@ -108,10 +108,13 @@ else()  # experiments/package.sh packs the installed files, so that the archive 
   # Copyright files of the Debian packages from which these libraries are copied.
   install(CODE "set(beside ${beside})\nset(licences ${CMAKE_INSTALL_DOCDIR}/licences)")
   install(CODE [[
-    set(prefix $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX})
+    file(REAL_PATH $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX} prefix)  # the prefix may be relative
     file(GLOB libraries RELATIVE ${prefix}/${beside} ${prefix}/${beside}/*)
     foreach(library IN LISTS libraries)
-      execute_process(COMMAND dpkg-query --search *-linux-gnu*/${library} OUTPUT_VARIABLE found ERROR_QUIET)
+      # A link may be one of the system's choice among several packages (libblas.so.3), so look for the file behind it.
+      file(REAL_PATH ${prefix}/${beside}/${library} file)
+      cmake_path(GET file FILENAME name)
+      execute_process(COMMAND dpkg-query --search *-linux-gnu*/${name} /usr/lib/${name} OUTPUT_VARIABLE found ERROR_QUIET)
       string(REGEX MATCHALL "(^|\n)[^:\n]+" packages "${found}")
       foreach(package IN LISTS packages)
         string(STRIP "${package}" package)

@@ -69,20 +69,26 @@ def component(licence, libraries):
 
 
 def owners_of(name):
-    """The Debian packages that contain a library of this name."""
-    found = subprocess.run(["dpkg-query", "--search", "*-linux-gnu*/" + name], capture_output=True, text=True)
+    """The Debian packages that contain a library of this name; that of Ipopt is not in a folder of the architecture."""
+    found = subprocess.run(["dpkg-query", "--search", "*-linux-gnu*/" + name, "/usr/lib/" + name], capture_output=True,
+                           text=True)
     return sorted({line.split(":")[0] for line in found.stdout.splitlines()})
 
 
 def main():
     tree, version = pathlib.Path(sys.argv[1]), sys.argv[2]
     documents = tree / "share" / "doc" / "pkmopt"
-    libraries = [{"name": path.name, "owners": owners_of(path.name),
+    # A link may be one of the system's choice among several packages (libblas.so.3), so look for the file behind it.
+    libraries = [{"name": path.name, "owners": owners_of(path.resolve().name),
                   "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
                  for path in sorted(tree.glob("lib/**/pkmopt/*.so*"))]
     unknown = [library["name"] for library in libraries if not library["owners"]]
     if unknown:
         sys.exit("sbom.py: no Debian package contains " + ", ".join(unknown))
+    licences = {path.name for path in (documents / "licences").iterdir()}
+    missing = {owner for library in libraries for owner in library["owners"]} - licences
+    if missing:
+        sys.exit("sbom.py: no copyright file of " + ", ".join(sorted(missing)))
     components = [component(licence, libraries) for licence in sorted((documents / "licences").iterdir())]
     when = time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", time.time())))
     bill = {"bomFormat": "CycloneDX", "specVersion": "1.5", "version": 1,

@@ -49,15 +49,18 @@ def main():
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
         contents = [(name, path.read_bytes()) for name, path in sorted(files.items())]
         contents += [(name, text.encode()) for name, text in texts.items()]
-        for name, data in contents:
+        def write(name, data):
             entry = zipfile.ZipInfo(name)  # without the time, so that the same files give the same wheel
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = (0o755 if ".so" in name else 0o644) << 16
             archive.writestr(entry, data)
+
+        for name, data in contents:
+            write(name, data)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
             record.append("%s,sha256=%s,%d" % (name, digest, len(data)))
         record.append(info + "/RECORD,,")
-        archive.writestr(info + "/RECORD", "\n".join(record) + "\n")
+        write(info + "/RECORD", ("\n".join(record) + "\n").encode())
     print(wheel)
 
 
