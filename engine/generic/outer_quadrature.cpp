@@ -24,9 +24,7 @@ void add_gradient(const expression::Program& program, const std::vector<double>&
 }
 
 /// A subinterval of the range of an outer coordinate, with the integral over it.
-struct OuterCell {
-  Subinterval<double> interval;
-  double value = 0, error = 0;
+struct OuterCell : QuadratureCell<double> {
   double inner_error = 0;  ///< integral over the subinterval of the estimated error of the inner volume
   std::vector<double> by_input{};
 };
@@ -47,50 +45,51 @@ Integral<double> OuterQuadrature::measure(std::size_t level, std::vector<double>
   if (!(width > 0)) return {};
   std::vector<OuterCell> cells;
   Integral<double> sum;
-  const NestedRule& rule = patterson_rule();
-  std::array<double, NestedRule::kNodes> term, error_term;
+  const Quadrature settings{.rule = patterson_rule()};
+  std::array<double, NestedRule::kNodes> error_at;
   std::array<std::vector<double>, NestedRule::kNodes> by_input_at;
   const auto integrate = [&](OuterCell& cell) {
-    std::size_t known = 0;
-    for (const NestedRule::Level& weights : rule.level) {
-      for (; known < weights.nodes; ++known) {
-        const auto [point, jacobian] = map_node(cell.interval, rule.node[known]);
-        by_input_at[known].assign(by_input.size(), 0);
-        const Integral<double> found = at(level, point, inputs, by_input_at[known], inner);
-        term[known] = jacobian * found.value;
-        error_term[known] = jacobian * found.error;
-        for (double& each : by_input_at[known]) each *= jacobian;
-        sum.evaluations += found.evaluations;
-      }
-      cell.value = cell.inner_error = 0;
-      cell.by_input.assign(by_input.size(), 0);
-      for (std::size_t i = 0; i < known; ++i) {
-        cell.value += weights.weight[i] * term[i];
-        cell.inner_error += weights.weight[i] * error_term[i];
-        for (std::size_t k = 0; k < by_input.size(); ++k) cell.by_input[k] += weights.weight[i] * by_input_at[i][k];
-      }
-      cell.error = rule_error(weights, term, cell.value);
-      // Where the first nodes find no workspace, the others look for it, too.
-      if (cell.value > 0 && cell.error <= tolerance_ * cell.value) break;
+    std::size_t nodes = 0;
+    const auto volume_at = [&](double point) {
+      by_input_at[nodes].assign(by_input.size(), 0);
+      const Integral<double> found = at(level, point, inputs, by_input_at[nodes], inner);
+      error_at[nodes++] = found.error;
+      sum.evaluations += found.evaluations;
+      return found.value;
+    };
+    // Where the first nodes find no workspace, the others look for it, too.
+    const auto is_accurate = [&] {
+      return cell.integral.value > 0 && cell.integral.error <= tolerance_ * cell.integral.value;
+    };
+    cell.levels = 0;
+    do apply_rule(volume_at, settings, cell);
+    while (!is_accurate() && cell.levels < settings.rule.level.size());
+    cell.inner_error = 0;
+    cell.by_input.assign(by_input.size(), 0);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const double weight = settings.rule.level[cell.levels - 1].weight[i];
+      const double jacobian = map_node(cell.interval, settings.rule.node[i]).jacobian;
+      cell.inner_error += weight * (jacobian * error_at[i]);
+      for (std::size_t k = 0; k < by_input.size(); ++k) cell.by_input[k] += weight * (jacobian * by_input_at[i][k]);
     }
   };
   // Many mechanisms are symmetric about the middle of the range, where their volumes may have a kink.
   const double middle = range.lower + 0.5 * width;
   for (const Subinterval<double>& half : {Subinterval<double>{range.lower, middle}, {middle, range.upper}}) {
-    cells.push_back({half});
+    cells.emplace_back().interval = half;
     integrate(cells.back());
   }
   while (true) {
     double error = 0, inner_error = 0;
     sum.value = 0;
     for (const OuterCell& cell : cells) {
-      sum.value += cell.value;
-      error += cell.error;
+      sum.value += cell.integral.value;
+      error += cell.integral.error;
       inner_error += cell.inner_error;
     }
     sum.error = error + inner_error;
     if (error <= std::max(tolerance_ * sum.value, inner_error) || cells.size() >= kMaxCells) break;
-    const auto worst = std::ranges::max_element(cells, {}, &OuterCell::error);
+    const auto worst = std::ranges::max_element(cells, {}, [](const OuterCell& cell) { return cell.integral.error; });
     bisect_cell(cells, static_cast<std::size_t>(worst - cells.begin()), integrate);
   }
   if (by_input.empty()) return sum;
