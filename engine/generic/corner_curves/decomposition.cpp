@@ -1,7 +1,6 @@
 #include "engine/generic/corner_curves/decomposition.hpp"
 
 #include <algorithm>
-#include <span>
 
 #include "engine/generic/corner_curves/events.hpp"
 
@@ -28,6 +27,8 @@ class RangeBuilder {
  private:
   using Pair = DecompositionScratch::Pair;
 
+  int pair_of(std::size_t i, std::size_t j) const { return s_.pair_of[i * curves_.size() + j]; }
+
   void add_ranges(Pair& pair) {
     std::ranges::sort(pair.events, {}, &DecompositionScratch::Event::at);
     if (pair.has_conic) {
@@ -52,12 +53,10 @@ class RangeBuilder {
 
   /// Set of the curves whose sign at the crossings of curves i and j can change without an event: their crossings with
   /// i or with j are infeasible, so that no events were determined for them.
-  Signs unknown_signs(std::size_t i, std::size_t j) {
+  Signs unknown_signs(std::size_t i, std::size_t j) const {
     Signs unknown = 0;
     for (std::size_t k = 0; k < count_; ++k)
-      if (k != i && k != j &&
-          (s_.pair_of[i * curves_.size() + k] == kInfeasible || s_.pair_of[j * curves_.size() + k] == kInfeasible))
-        unknown |= bit(k);
+      if (k != i && k != j && (pair_of(i, k) == kInfeasible || pair_of(j, k) == kInfeasible)) unknown |= bit(k);
     return unknown;
   }
 

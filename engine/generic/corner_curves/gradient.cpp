@@ -50,10 +50,9 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
   const std::size_t nodes = terms <= 4 ? 8 : terms <= 14 ? 16 : terms <= 22 ? 24 : kNodes;
   add_adjoints(segment.integral, nodes, by_curve);
   Samples by_values;
-  scratch.is_active.assign(segment.slices.curves.size(), false);
+  scratch.is_active.assign(segment.integral.curves.size(), false);
   for (const ActiveRange& range : segment.integral.decomposition.ranges)
-    for (const std::size_t i : {range.first, range.second})
-      if (i < scratch.is_active.size()) scratch.is_active[i] = true;
+    scratch.is_active[range.first] = scratch.is_active[range.second] = true;
   for (std::size_t i = 0; i < segment.slices.curves.size(); ++i) {
     if (!scratch.is_active[i]) continue;
     for (Samples& each : std::span(by_curve[i]).first(segment.slices.curves[i].is_conic() ? 6 : 3)) {

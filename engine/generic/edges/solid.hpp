@@ -43,7 +43,8 @@ struct EdgeVolume {
   /// Largest component, over all faces, of the sum of the vectors along the edges of a face; 0 if they are closed [m].
   double gap = 0;
   bool is_supported = true;  ///< false: the method cannot compute the volume, because two faces are on the same surface
-  /// true: the edges of each face are closed up to rounding errors, and no interval is undecided.
+  /// true: the edges of each face are closed, and no interval is undecided, up to the square root of the rounding
+  /// errors, which touching surfaces cause. Gaps and undecided intervals are part of the error.
   bool is_closed = true;
   long boxes = 0, nodes = 0;  ///< number of intervals that were examined, and number of quadrature nodes
 };
