@@ -85,11 +85,11 @@ def main():
     unknown = [library["name"] for library in libraries if not library["owners"]]
     if unknown:
         sys.exit("sbom.py: no Debian package contains " + ", ".join(unknown))
-    licences = {path.name for path in (documents / "licences").iterdir()}
-    missing = {owner for library in libraries for owner in library["owners"]} - licences
+    licences = sorted((documents / "licences").iterdir())
+    missing = {owner for library in libraries for owner in library["owners"]} - {path.name for path in licences}
     if missing:
         sys.exit("sbom.py: no copyright file of " + ", ".join(sorted(missing)))
-    components = [component(licence, libraries) for licence in sorted((documents / "licences").iterdir())]
+    components = [component(licence, libraries) for licence in licences]
     when = time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", time.time())))
     bill = {"bomFormat": "CycloneDX", "specVersion": "1.5", "version": 1,
             "metadata": {"timestamp": time.strftime("%Y-%m-%dT%H:%M:%SZ", when),

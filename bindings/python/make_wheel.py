@@ -49,6 +49,7 @@ def main():
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED) as archive:
         contents = [(name, path.read_bytes()) for name, path in sorted(files.items())]
         contents += [(name, text.encode()) for name, text in texts.items()]
+
         def write(name, data):
             entry = zipfile.ZipInfo(name)  # without the time, so that the same files give the same wheel
             entry.compress_type = zipfile.ZIP_DEFLATED

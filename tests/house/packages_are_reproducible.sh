@@ -2,15 +2,14 @@
 # packages_are_reproducible.sh SOURCE PROGRAM: packs the same files twice, written in another order and at another time,
 # and compares the bytes of the archives, of the Debian packages, of the wheels and of the software bills of materials.
 set -euo pipefail
-source "$1/experiments/repack.sh"
+source=$1
+program=$2
+source "$source/experiments/repack.sh"
 export SOURCE_DATE_EPOCH=1700000000
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # Ipopt's library is not in a folder of the architecture, and that of BLAS is a link of the system's alternatives.
 library_of() { ldd "$program" | sed -n "s/.*$1.* => \\(\\S*\\) .*/\\1/p"; }
-program=$2
-
-source=$1
 build() {  # build FOLDER TIME NAME..
   local root=$work/$1 time=$2 name
   mkdir -p "$root/tree/share/doc/pkmopt/licences" "$root/tree/lib/pkmopt" "$root/deb/DEBIAN" "$root/deb/usr"
