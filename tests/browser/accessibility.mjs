@@ -63,7 +63,7 @@ function unnamedElements() {
 let checked = 0;
 const page = await Page.open(html);
 for (const scheme of ["dark", "light"]) {
-  await page.page.emulateMedia({ colorScheme: scheme });
+  await page.setScheme(scheme);
   const contrast = await page.page.evaluate(lowContrastTexts);
   assert.deepEqual(contrast.low, [], `low contrast in the ${scheme} theme`);
   const names = await page.page.evaluate(unnamedElements);

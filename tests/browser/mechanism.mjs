@@ -102,12 +102,14 @@ assert.ok(sliders >= 6, `${sliders} sliders`);
 // Wide and narrow window and dark theme, for one mechanism only, because drawing is slow without a graphics card.
 if (name === "4ppa-2par") {
   await page.page.setViewportSize({ width: 1920, height: 1080 });
-  await page.page.emulateMedia({ colorScheme: "dark" });
+  await page.setScheme("dark");
   await page.draw("summary");
   await page.comparePicture("4PPa-2PaR at 1920, dark: summary", "#summary .overview");
   await page.screenshots(folder, "1920-dark", ["summary"]);
   await page.page.setViewportSize({ width: 800, height: 900 });
-  await page.page.evaluate(() => document.querySelectorAll("#summary .plot").forEach((plot) => plot.data && Plotly.Plots.resize(plot)));
+  await page.page.evaluate(() =>
+    Promise.all([...document.querySelectorAll("#summary .plot")].map((plot) => plot.data && Plotly.Plots.resize(plot))),
+  );
   await page.expectMargins("summary");
 }
 await page.close();

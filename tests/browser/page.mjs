@@ -131,6 +131,12 @@ export class Page {
     this.expectNoProblems();
   }
 
+  /** Switches to "light" or "dark". The page hears of it later, and until then draw() sees plots that are drawn. */
+  async setScheme(scheme) {
+    await this.page.emulateMedia({ colorScheme: scheme });
+    await this.page.waitForFunction((theme) => document.documentElement.dataset.theme === theme, scheme);
+  }
+
   /** Hashes of the data of the plots of a panel. */
   drawn(panel) {
     return this.page.evaluate(
