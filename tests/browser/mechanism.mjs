@@ -86,13 +86,10 @@ const surface = await page.hover("workspace");
 assert.ok(/x −?[\d.]+ m/.test(surface.replace("-", "−")), `hover over the workspace: “${surface}”`);
 
 // Rotating one workspace rotates the other.
-const linked = await page.page.evaluate(async () => {
-  const [one, other] = document.querySelectorAll("#workspace .plot");
-  await Plotly.relayout(one, { "scene.camera": { eye: { x: 2, y: 1, z: 0.5 } } });
-  await new Promise((done) => setTimeout(done, 200));
-  return other.layout.scene.camera.eye.y;
-});
-assert.equal(linked, 1);
+await page.page.evaluate(() =>
+  Plotly.relayout(document.querySelector("#workspace .plot"), { "scene.camera": { eye: { x: 2, y: 1, z: 0.5 } } }),
+);
+await page.page.waitForFunction(() => document.querySelectorAll("#workspace .plot")[1].layout.scene.camera.eye.y === 1);
 
 let sliders = 0;
 for (const panel of ["workspace", "mechanism", "populations"])

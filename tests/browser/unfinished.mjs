@@ -7,7 +7,7 @@ import { folderOf, Page, pkmopt } from "./page.mjs";
 
 const folder = folderOf("unfinished");
 
-/** Starts a long study and kills its process when the study file exists; returns the file. */
+/** Starts a long study and kills its process when it has stored some generations; returns the file. */
 async function killed() {
   const toml = path.join(folder, "killed.toml"),
     file = path.join(folder, "killed.h5");
@@ -30,14 +30,17 @@ population = 50
 generations = 100000
 `,
   );
-  rmSync(file, { force: true });
-  const child = spawn(process.env.PKMOPT, ["run", toml, "--output", file, "--quiet"], { stdio: "ignore" });
-  const ended = new Promise((resolve) => child.on("exit", resolve));
   const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-  while (!existsSync(file)) await pause(5);
-  await pause(100);
-  child.kill("SIGKILL");
-  await ended;
+  for (let wait = 100, stored = 0; stored < 2; wait *= 4) {
+    rmSync(file, { force: true });
+    const child = spawn(process.env.PKMOPT, ["run", toml, "--output", file, "--quiet"], { stdio: "ignore" });
+    const ended = new Promise((resolve) => child.on("exit", resolve));
+    while (!existsSync(file)) await pause(5);
+    await pause(wait);
+    child.kill("SIGKILL");
+    await ended;
+    stored = JSON.parse(pkmopt("show", file, "--json")).stages[0]?.generations ?? 0;
+  }
   return file;
 }
 
