@@ -32,12 +32,15 @@ struct Lanes {
   [[gnu::always_inline]] Lanes(double x) {  // not explicit, because formulas combine constants and lanes
     for (Register& p : part) p = Register{} + x;
   }
+  // A register at a time, because GCC 12 copies more than that by way of the stack.
   [[gnu::always_inline]] static Lanes load(const double* from) {
     Lanes x;
-    std::memcpy(x.part, from, sizeof x.part);
+    for (int i = 0; i < kLanes / W; ++i) std::memcpy(&x.part[i], from + i * W, sizeof x.part[i]);
     return x;
   }
-  [[gnu::always_inline]] void store(double* to) const { std::memcpy(to, part, sizeof part); }
+  [[gnu::always_inline]] void store(double* to) const {
+    for (int i = 0; i < kLanes / W; ++i) std::memcpy(to + i * W, &part[i], sizeof part[i]);
+  }
 };
 
 /// The type Lanes for an instruction set.
