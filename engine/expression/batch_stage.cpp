@@ -1,6 +1,7 @@
 #include "engine/expression/batch_stage.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/expression/implicit_system.hpp"
 
@@ -32,6 +33,7 @@ BatchStage::BatchStage(const Program& program, std::size_t stage, std::span<cons
     const Program::Step& step = of.steps[k];
     BatchStep made{.code = step.code,
                    .rule = std::get<Rule<double>>(step.operation->rules),
+                   .derivatives = std::get<Rule<Dual4>>(step.operation->rules),
                    .count = step.count,
                    .to = 0,
                    .from = {}};
@@ -64,8 +66,33 @@ void solve_batch(const BatchSolve& step, const double* registers, double* rows, 
   }
 }
 
+void sweep_other(const BatchStep& step, const double* registers, const double* rows, std::size_t count,
+                 const BatchAdjoints& adjoints) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double adjoint = adjoints.rows[step.to * kRow + k];
+    if (adjoint == 0) continue;
+    Dual4 arguments[kMaxArguments];
+    for (int i = 0; i < step.count; ++i) {
+      const Operand& from = step.from[i];
+      arguments[i] = Dual4::variable(from.row ? rows[from.index * kRow + k] : registers[from.index], i);
+    }
+    const Dual4 result = step.derivatives(arguments, step.count);
+    for (int i = 0; i < step.count; ++i) {
+      const Operand& from = step.from[i];
+      const double contribution = adjoint * result.v[i];
+      if (!std::isfinite(contribution)) continue;
+      (from.row ? adjoints.rows[from.index * kRow + k] : adjoints.registers[from.index]) += contribution;
+    }
+  }
+}
+
 void BatchStage::run(const double* registers, double* rows, std::size_t count) const {
   with_instruction_set([&]<InstructionSet set> { run_batch<set>(steps_, registers, rows, count); });
+}
+
+void BatchStage::backward_sweep(const double* registers, const double* rows, std::size_t count,
+                                const BatchAdjoints& adjoints) const {
+  with_instruction_set([&]<InstructionSet set> { sweep_batch<set>(steps_, registers, rows, count, adjoints); });
 }
 
 }  // namespace pkm::expression

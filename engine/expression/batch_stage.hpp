@@ -1,4 +1,4 @@
-// Vectorised (SIMD) evaluation of one stage of a program, for a batch of up to kRow input values.
+// Vectorised (SIMD) evaluation and differentiation of one stage of a program, for a batch of up to kRow input values.
 //
 // The innermost loop of a workspace analysis evaluates the same steps for many values of one coordinate. Here, every
 // step is carried out for the whole batch before the next step follows (structure of arrays): a register of the stage
@@ -52,6 +52,7 @@ void solve_batch(const BatchSolve& step, const double* registers, double* rows, 
 struct BatchStep {
   Code code;
   Rule<double> rule;
+  Rule<Dual4> derivatives;
   std::uint8_t count;
   std::uint32_t to;  ///< slot of the row that receives the result
   Operand from[kMaxArguments];
@@ -63,6 +64,19 @@ struct BatchStep {
 /// @param rows   slot k is rows[k * kRow], ..., rows[k * kRow + kRow - 1]
 template <InstructionSet set>
 void run_batch(std::span<const BatchStep> steps, const double* registers, double* rows, std::size_t count);
+
+/// Adjoints of the values of a batch: of each number in a row, and of each register of the earlier stages.
+struct BatchAdjoints {
+  double *rows, *registers;
+};
+
+/// Propagates adjoints backwards through steps, see BatchStage::backward_sweep().
+template <InstructionSet set>
+void sweep_batch(std::span<const BatchStep> steps, const double* registers, const double* rows, std::size_t count,
+                 const BatchAdjoints& adjoints);
+/// The same for one step whose operation has no dedicated implementation, by dual numbers.
+void sweep_other(const BatchStep& step, const double* registers, const double* rows, std::size_t count,
+                 const BatchAdjoints& adjoints);
 
 /// A stage prepared for batches; immutable. Rows are assigned to slots by their lifetime: a slot is reused after the
 /// last step that reads its row, so that few slots are needed and they stay in the cache.
@@ -83,6 +97,14 @@ class BatchStage {
   /// @param rows       slot k is rows[k * kRow], ..., rows[k * kRow + kRow - 1]
   /// @param count      a multiple of kLanes, at most kRow
   void run(const double* registers, double* rows, std::size_t count) const;
+
+  /// Backward sweep (reverse_mode.hpp) after run(): propagates the adjoints of the rows to those of the inputs' rows,
+  /// and to those of registers of earlier stages, as the sum over all values. The propagated adjoints are then set to
+  /// 0. Contributions that are not finite are dropped. All registers of the stage must have been retained, and no step
+  /// may solve a system.
+  /// @param adjoints  adjoints of the first `count` values of each row, and of each register
+  void backward_sweep(const double* registers, const double* rows, std::size_t count,
+                      const BatchAdjoints& adjoints) const;
 
  private:
   std::vector<BatchStep> steps_;
