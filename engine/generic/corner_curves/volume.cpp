@@ -66,7 +66,6 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
     cells += segment.integral.cells.size();
   }
   const auto scale = [](const Segment& segment) { return segment.slices.frame.scale * segment.slices.frame.scale; };
-  const std::size_t start = cells;
   Integral<double> total;
   for (;; ++cells) {
     total = {};
@@ -84,7 +83,7 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
     // An error of kBetter times the tolerance costs little if the integrands are smooth, and derivatives need this
     // accuracy.
     const double share = total.error / (tolerance_ * std::fabs(total.value));
-    if (!worst || share <= kBetter || (share <= 1 && cells > 2 * start) || cells > kMaxCells) break;
+    if (!worst || share <= kBetter || cells > kMaxCells) break;
     if (!worst->integral.refine()) break;
   }
   for (const Segment& segment : segments) {
