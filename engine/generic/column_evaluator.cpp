@@ -90,7 +90,8 @@ class GenericColumns final : public WithGradients<GenericColumns>, public Volume
     if (found.value == 0 && found.error > 0) result.error = 1;
     if constexpr (!std::is_same_v<S, double>) {
       for (std::size_t i = 0; i < samples.inputs.size(); ++i)
-        result.volume.v = result.volume.v + samples.inputs[i].v * design.last.by_input[i];
+        if (const double by = design.last.by_input[i]; by != 0)
+          result.volume.v = result.volume.v + samples.inputs[i].v * by;
     }
     if (request_.needs_samples()) add_all_samples(0, S(1.0), parameters, samples, design, result);
   }

@@ -37,7 +37,7 @@ bool BoundaryCurve::interpolate(double tolerance) {
   /// @return maximum magnitude of the values
   const auto interpolate_function = [&](const Samples& of, Samples& coefficients) {
     double largest = 0;
-    for (const double value : of) largest = std::fmax(largest, std::fabs(value));
+    for (const double value : of) largest = std::max(largest, std::fabs(value));
     if (!std::isfinite(largest)) return largest;
     to_coefficients(of, coefficients);
     const double scale = is_circle() ? 1 + largest : 1;
@@ -45,8 +45,8 @@ bool BoundaryCurve::interpolate(double tolerance) {
     has_converged = has_converged && own_tail <= tolerance * scale;
     // Trailing coefficients of the series that are smaller than the rounding errors of the values are not used.
     const double rounding = 8 * kUnitRoundoff * scale;
-    tail = std::fmax(tail, own_tail);
-    error = std::fmax(error, own_tail + rounding);
+    tail = std::max(tail, own_tail);
+    error = std::max(error, own_tail + rounding);
     terms = std::max(terms, significant_terms(coefficients, kNodes, rounding));
     return largest;
   };

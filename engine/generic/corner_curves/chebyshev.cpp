@@ -41,7 +41,15 @@ Matrix polynomials_on_upper_half() {
 
 }  // namespace
 
-double chebyshev_node(std::size_t n, std::size_t nodes) { return polynomial_at_node(1, n, nodes); }
+double chebyshev_node(std::size_t n, std::size_t nodes) {
+  static const auto nodes_of = [](std::size_t count) {
+    Samples all{};
+    for (std::size_t i = 0; i < count; ++i) all[i] = polynomial_at_node(1, i, count);
+    return all;
+  };
+  static const std::array<Samples, 4> tables{nodes_of(8), nodes_of(16), nodes_of(24), nodes_of(kNodes)};
+  return tables[nodes / 8 - 1][n];
+}
 
 const Samples& chebyshev_nodes() {
   static const Samples nodes = [] {
@@ -75,9 +83,8 @@ void transpose_to_values(const Samples& by_coefficients, std::size_t nodes, Samp
   };
   static const std::array<Matrix, 4> tables{table_of(8), table_of(16), table_of(24), table_of(kNodes)};
   const Matrix& table = tables[nodes / 8 - 1];
-  by_values.fill(0);
-  for (std::size_t k = 0; k < nodes; ++k)
-    for (std::size_t n = 0; n < nodes; ++n) by_values[n] += by_coefficients[k] * table[k][n];
+  with_instruction_set(
+      [&]<InstructionSet set> { combine_rows<set>(table[0].data(), by_coefficients.data(), nodes, by_values.data()); });
 }
 
 std::size_t significant_terms(const Samples& coefficients, std::size_t terms, double size) {

@@ -68,7 +68,7 @@ bool resolve_pair(const std::vector<BoundaryCurve>& curves, CurvePair& pair, std
       const Vector p = crossing(curves[pair.first].at_node(n), curves[pair.second].at_node(n), branch);
       h.values[n] = curves[third].at_node(n).h(p);
       if (pair.has_branches && d[n] < smallest) continue;
-      largest = std::fmax(largest, std::fabs(h.values[n]));
+      largest = std::max(largest, std::fabs(h.values[n]));
       ++samples;
       // The perturbation moves the crossing along the other curve of the pair, to the point where h + epsilon = 0 for
       // the moved curve.

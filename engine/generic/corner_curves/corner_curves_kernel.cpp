@@ -68,6 +68,46 @@ void series_at_points(const double* const* series, std::size_t count, std::size_
 }
 
 template <InstructionSet set>
+void add_adjoints_of_series(const double* points, std::size_t number_of_points, const double* weights,
+                            std::size_t count, std::size_t terms, double* const* coefficients) {
+  L polynomials[kNodes / kLanes][kPoints];  // [k / kLanes][q]: T_k at point q, for kLanes successive k
+  for (std::size_t q = 0; q < number_of_points; ++q) {
+    // T_0 .. T_8, of which eight at a time follow by T_(k+8) = 2 T_8 T_k - T_|k-8|.
+    double first[kLanes + 1] = {1, points[q]}, reversed[kLanes];
+    for (int k = 2; k <= kLanes; ++k) first[k] = 2 * points[q] * first[k - 1] - first[k - 2];
+    for (int k = 0; k < kLanes; ++k) reversed[k] = first[kLanes - k];
+    const L twice(2 * first[kLanes]);
+    L before = L::load(reversed), now = L::load(first);
+    for (std::size_t k = 0; k < terms / kLanes; ++k) {
+      polynomials[k][q] = now;
+      const L next = twice * now - before;
+      before = now;
+      now = next;
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < terms / kLanes; ++k) {
+      double* const to = coefficients[i] + k * kLanes;
+      L total = L::load(to);
+      for (std::size_t q = 0; q < number_of_points; ++q)
+        total = total + polynomials[k][q] * L(weights[i * kPoints + q]);
+      total.store(to);
+    }
+}
+
+template <InstructionSet set>
+void combine_rows(const double* table, const double* factors, std::size_t size, double* values) {
+  for (std::size_t n = 0; n < size; n += kLanes) {
+    L even(0.0), odd(0.0);
+    for (std::size_t k = 0; k < size; k += 2) {
+      even = even + L(factors[k]) * L::load(table + k * kNodes + n);
+      odd = odd + L(factors[k + 1]) * L::load(table + (k + 1) * kNodes + n);
+    }
+    (even + odd).store(values + n);
+  }
+}
+
+template <InstructionSet set>
 double concurrence_at_nodes(const ConcurrenceArguments& curves, double* values) {
   const L second(curves.second_share), third(curves.third_share);
   L largest(0.0);
@@ -93,6 +133,9 @@ template void transform<PKM_INSTRUCTION_SET>(const double*, const double*, doubl
 template void restrict_to_halves<PKM_INSTRUCTION_SET>(const double*, const double*, std::size_t, double*, double*);
 template void series_at_points<PKM_INSTRUCTION_SET>(const double* const*, std::size_t, std::size_t, const double*,
                                                     double*);
+template void add_adjoints_of_series<PKM_INSTRUCTION_SET>(const double*, std::size_t, const double*, std::size_t,
+                                                          std::size_t, double* const*);
+template void combine_rows<PKM_INSTRUCTION_SET>(const double*, const double*, std::size_t, double*);
 template double concurrence_at_nodes<PKM_INSTRUCTION_SET>(const ConcurrenceArguments&, double*);
 
 }  // namespace pkm::generic::corner_curves

@@ -74,7 +74,7 @@ struct Pencil {
       for (std::size_t i = 0; i < 3; ++i) {
         const double change = -(at_f * bp[i] + at_g * pa[i]) / d;
         next[i] = p[i] + change;
-        size = std::fmax(size, std::fabs(change));
+        size = std::max(size, std::fabs(change));
       }
       if (!(size < 1)) return 1;
       p = normalised(next);
@@ -176,7 +176,7 @@ void conic_discriminant(const BoundaryCurve& conic, const BoundaryCurve& other, 
       const AlongLine along(f, g);
       result.values[n] = along.discriminant();
       const double size = 1 + std::fabs(g.c);
-      largest = std::fmax(largest, size * size * (1 + std::fabs(along.b)));
+      largest = std::max(largest, size * size * (1 + std::fabs(along.b)));
       continue;
     }
     // Discriminant of the cubic polynomial det(x f + g) = a x^3 + b x^2 + c x + d.
@@ -191,7 +191,7 @@ void conic_discriminant(const BoundaryCurve& conic, const BoundaryCurve& other, 
     const double b = 0.5 * (above + below) - d, c = 0.5 * (above - below) - a;
     result.values[n] = 18 * a * b * c * d - 4 * b * b * b * d + b * b * c * c - 4 * a * c * c * c - 27 * a * a * d * d;
     const double size = std::fmax(std::fmax(std::fabs(a), std::fabs(b)), std::fmax(std::fabs(c), std::fabs(d)));
-    largest = std::fmax(largest, 30 * size * size * size);
+    largest = std::max(largest, 30 * size * size * size);
   }
   result.rounding = 32 * kUnitRoundoff * largest;
 }
@@ -333,7 +333,7 @@ bool follow_crossings(const BoundaryCurve& conic, const BoundaryCurve& other, co
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t n = 0; n < kNodes; ++n) path.values[i][n] = points[n][k][i];
         to_coefficients(path.values[i], path.series[i]);
-        path.error = std::fmax(path.error, interpolation_error(path.series[i], 1e-15));
+        path.error = std::max(path.error, interpolation_error(path.series[i], 1e-15));
         path.terms = std::max(path.terms, significant_terms(path.series[i], kNodes, 1e-15));
       }
       is_followed = path.error <= kFollowed;

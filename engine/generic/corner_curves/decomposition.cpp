@@ -142,7 +142,7 @@ class RangeBuilder {
         from = event.at;
         width = 0;
       }
-      width = std::fmax(width, event.width);
+      width = std::max(width, event.width);
       if (event.third < count_)
         stale |= bit(event.third);
       else

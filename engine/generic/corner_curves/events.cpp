@@ -102,7 +102,7 @@ class EventFinder {
     roots.clear();
     ++out_.functions;
     double largest = 0;
-    for (const double value : function.values) largest = std::fmax(largest, std::fabs(value));
+    for (const double value : function.values) largest = std::max(largest, std::fabs(value));
     Samples series;
     to_coefficients(function.values, series);
     const double error = interpolation_error(series, function.rounding);
@@ -304,7 +304,7 @@ class EventFinder {
                  f[n].u * g[n].w - f[n].w * g[n].u};
       }
       function_.values[n] = homogeneous_value(h[n], point);
-      largest = std::fmax(largest, point[0] * point[0] + point[1] * point[1]);
+      largest = std::max(largest, point[0] * point[0] + point[1] * point[1]);
     }
     function_.rounding = (32 * kUnitRoundoff + 4 * curves_[conic].tail) * largest;
     if (add_events_on(pair, range, function_, static_cast<std::uint8_t>(conic),
@@ -403,7 +403,7 @@ class EventFinder {
         const Vector p = crossing(first, second, branch);
         for (std::size_t k = 0; k < count_; ++k)
           if (necessary_.has(k) && !is_conic(k) && smallest[k] > 0)
-            smallest[k] = std::fmin(smallest[k], necessary_.violation(k, curve_at(curves_[k], place).h(p)));
+            smallest[k] = std::min(smallest[k], necessary_.violation(k, curve_at(curves_[k], place).h(p)));
       }
     }
     std::size_t worst = count_;

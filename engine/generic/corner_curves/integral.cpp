@@ -89,41 +89,39 @@ class CellCurves {
     }
   }
 
-  struct Point {
-    CurveAt first, second;
-    Vector p;
-    double angle_of_first = 0, angle_of_second = 0;
-  };
-  Point at(std::size_t q) const {
-    const auto curve = [&](const BoundaryCurve& which, std::size_t k) {
-      const auto value = [&, q](const std::array<double, 3 * kPoints>& values, std::size_t f) {
-        return values[f * kPoints + q];
-      };
-      CurveAt at{which.is_circle(), value(values_[k], 0), value(values_[k], 1), value(values_[k], 2)};
-      if (which.is_conic()) {
-        at.is_conic = true;
-        at.swaps = which.swaps;
-        at.xx = value(quadratic_[k], 0);
-        at.xy = value(quadratic_[k], 1);
-        at.yy = value(quadratic_[k], 2);
-      }
-      return at;
-    };
-    Point point{curve(first_, 0), curve(second_, 1), {}};
-    if (is_cut()) return point;
-    point.p = path_ ? path_->at(tau_[q], point.first, point.second) : crossing(point.first, point.second, branch_);
-    if (point.first.is_circle) point.angle_of_first = angle_of(point.first, cuts_[0], point.p);
-    if (point.second.is_circle) point.angle_of_second = angle_of(point.second, cuts_[1], point.p);
-    return point;
+  CurveAt first(std::size_t q) const { return curve_at(first_, 0, q); }
+  CurveAt second(std::size_t q) const { return curve_at(second_, 1, q); }
+  /// The crossing of the curves at a node.
+  CrossingAt crossing_at(std::size_t q, const CurveAt& first, const CurveAt& second) const {
+    if (is_cut()) return {};
+    CrossingAt at{path_ ? path_->at(tau_[q], first, second) : crossing(first, second, branch_)};
+    if (first.is_circle) at.angle_on_first = angle_of(first, cuts_[0], at.p);
+    if (second.is_circle) at.angle_on_second = angle_of(second, cuts_[1], at.p);
+    return at;
   }
-  double value(const Point& point) const {
-    if (is_cut()) return kPi * point.first.c;
-    return potential(point.first, point.p, point.angle_of_first) -
-           potential(point.second, point.p, point.angle_of_second);
+  double value(const CurveAt& first, const CurveAt& second, const CrossingAt& at) const {
+    if (is_cut()) return kPi * first.c;
+    return potential(first, at.p, at.angle_on_first) - potential(second, at.p, at.angle_on_second);
   }
   bool is_cut() const { return second_.kind == BoundaryCurve::Kind::cut; }
+  const double* nodes() const { return tau_.data(); }
 
  private:
+  CurveAt curve_at(const BoundaryCurve& curve, std::size_t k, std::size_t q) const {
+    const auto value = [q](const std::array<double, 3 * kPoints>& values, std::size_t f) {
+      return values[f * kPoints + q];
+    };
+    CurveAt at{curve.is_circle(), value(values_[k], 0), value(values_[k], 1), value(values_[k], 2)};
+    if (curve.is_conic()) {
+      at.is_conic = true;
+      at.swaps = curve.swaps;
+      at.xx = value(quadratic_[k], 0);
+      at.xy = value(quadratic_[k], 1);
+      at.yy = value(quadratic_[k], 2);
+    }
+    return at;
+  }
+
   const BoundaryCurve &first_, &second_;
   std::array<std::array<double, 2>, 2> cuts_;
   double branch_;
@@ -149,7 +147,9 @@ void integrate_cell(const SegmentIntegral& segment, RangeCell& cell) {
   std::array<double, kRule> term;
   cell.value = cell.size = 0;
   visit_cell(segment, cell, [&](std::size_t q, double, double weight) {
-    term[q] = weight * curves.value(curves.at(q));
+    const CurveAt first = curves.first(q), second = curves.second(q);
+    cell.crossings[q] = curves.crossing_at(q, first, second);
+    term[q] = weight * curves.value(first, second, cell.crossings[q]);
     cell.value += level.weight[q] * term[q];
     cell.size += level.weight[q] * std::fabs(term[q]);
   });
@@ -200,26 +200,30 @@ void add_adjoints(const SegmentIntegral& segment, std::size_t terms, std::vector
   for (const RangeCell& cell : segment.cells) {
     const ActiveRange& range = segment.decomposition.ranges[cell.range];
     const CellCurves curves(segment, range, cell);
-    visit_cell(segment, cell, [&](std::size_t q, double tau, double weight) {
-      const auto point = curves.at(q);
+    // For each function of the two curves, the derivatives of the integral with respect to its values at the nodes of
+    // the rule, and the adjoints of its series.
+    std::array<std::array<double, kPoints>, 12> by_values;
+    std::array<double*, 12> by_series;
+    const std::size_t of_first = segment.curves[range.first].is_conic() ? 6 : 3;
+    const std::size_t of_second = curves.is_cut() ? 0 : segment.curves[range.second].is_conic() ? 6 : 3;
+    for (std::size_t i = 0; i < of_first; ++i) by_series[i] = adjoints[range.first][i].data();
+    for (std::size_t i = 0; i < of_second; ++i) by_series[of_first + i] = adjoints[range.second][i].data();
+    visit_cell(segment, cell, [&](std::size_t q, double, double weight) {
+      const CrossingAt& at = cell.crossings[q];
       std::array<double, 6> f{}, g{};
       if (curves.is_cut()) {
         f[2] = kPi;
       } else {
-        f = potential_derivatives(point.first, point.p, point.angle_of_first);
-        g = potential_derivatives(point.second, point.p, point.angle_of_second);
+        f = potential_derivatives(curves.first(q), at.p, at.angle_on_first);
+        g = potential_derivatives(curves.second(q), at.p, at.angle_on_second);
       }
-      std::array<double, kNodes> polynomials;
-      polynomials[0] = 1;
-      polynomials[1] = tau;
-      for (std::size_t k = 2; k < terms; ++k) polynomials[k] = 2 * tau * polynomials[k - 1] - polynomials[k - 2];
-      const auto add = [&](std::size_t curve, const std::array<double, 6>& by, double factor) {
-        const std::size_t functions = segment.curves[curve].is_conic() ? 6 : 3;
-        for (std::size_t i = 0; i < functions; ++i)
-          for (std::size_t k = 0; k < terms; ++k) adjoints[curve][i][k] += factor * by[i] * polynomials[k];
-      };
-      add(range.first, f, weight * level.weight[q]);
-      if (!curves.is_cut()) add(range.second, g, -weight * level.weight[q]);
+      const double factor = weight * level.weight[q];
+      for (std::size_t i = 0; i < of_first; ++i) by_values[i][q] = factor * f[i];
+      for (std::size_t i = 0; i < of_second; ++i) by_values[of_first + i][q] = -factor * g[i];
+    });
+    with_instruction_set([&]<InstructionSet set> {
+      add_adjoints_of_series<set>(curves.nodes(), kRule, by_values[0].data(), of_first + of_second, terms,
+                                  by_series.data());
     });
   }
 }

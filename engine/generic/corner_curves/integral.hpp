@@ -20,11 +20,19 @@ inline double outer_derivative(const OuterRange& range, double tau) {
   return 0.5 * map_node(range, 0.5 * (tau + 1)).jacobian;
 }
 
+/// A crossing of two boundary curves: the point p and, of curves that are circles, its angle on the circle [rad],
+/// counted from the direction of the circle's cut.
+struct CrossingAt {
+  Vector p{};
+  double angle_on_first = 0, angle_on_second = 0;
+};
+
 /// A subinterval of an active range of tau, with the integral over it.
 struct RangeCell {
   std::uint32_t range;
   Subinterval<double> interval;  ///< subinterval of tau over which the crossing is integrated
   double value, error, size;     ///< integral, estimate of its error, and integral of the integrand's magnitude
+  std::array<CrossingAt, NestedRule::kNodes> crossings{};  ///< the crossing at the nodes of the quadrature rule
 };
 
 /// The integral over a segment, i.e. an interval of the outer coordinate in which the boundary curves are analytic.
@@ -50,7 +58,7 @@ struct SegmentIntegral {
 using CurveAdjoints = std::array<Samples, 6>;
 
 /// Adds the derivatives of a segment's integral with respect to the first `terms` Chebyshev coefficients of all curves.
-/// @param terms     at least 2
+/// @param terms     a multiple of kLanes
 /// @param adjoints  one element for each curve, to which the derivatives are added
 void add_adjoints(const SegmentIntegral& segment, std::size_t terms, std::vector<CurveAdjoints>& adjoints);
 

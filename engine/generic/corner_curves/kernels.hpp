@@ -30,6 +30,20 @@ template <InstructionSet set>
 void series_at_points(const double* const* series, std::size_t count, std::size_t terms, const double* points,
                       double* values);
 
+/// The transpose of series_at_points(): adds to coefficients[i][k] the sum over the points q of weights[i][q] T_k(x_q),
+/// for `count` functions i.
+/// @param points   the points x_q; at most kPoints
+/// @param weights  for each function, kPoints numbers
+/// @param terms    number of coefficients of each function, a multiple of kLanes
+template <InstructionSet set>
+void add_adjoints_of_series(const double* points, std::size_t number_of_points, const double* weights,
+                            std::size_t count, std::size_t terms, double* const* coefficients);
+
+/// values[n] = sum over k < size of factors[k] table[k][n], for n < size, a multiple of kLanes.
+/// @param table  rows of kNodes numbers
+template <InstructionSet set>
+void combine_rows(const double* table, const double* factors, std::size_t size, double* values);
+
 /// Three boundary curves by their equations a |p|^2 + b . p + c = 0. For each curve, three arrays contain the values of
 /// b_x, b_y and c at the kNodes nodes; a = 1 for the first curve.
 struct ConcurrenceArguments {

@@ -1,6 +1,7 @@
 #include "engine/generic/corner_curves/outer_plan.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace pkm::generic::corner_curves {
 namespace {
@@ -45,33 +46,32 @@ std::optional<OuterFunction> function_at_singularities(const Program::Step& step
 
 }  // namespace
 
-double OuterFunction::value(std::span<const double> all) const {
-  const double a = all[registers[0]];
+double OuterFunction::value(const std::array<double, 3>& x) const {
   switch (kind) {
     case Kind::value:
-      return a;
+      return x[0];
     case Kind::difference:
-      return a - all[registers[1]];
+      return x[0] - x[1];
     case Kind::one_minus_square:
-      return (1 - a) * (1 + a);
+      return (1 - x[0]) * (1 + x[0]);
     case Kind::discriminant:
       break;
   }
-  return all[registers[1]] * all[registers[1]] - 4 * a * all[registers[2]];
+  return x[1] * x[1] - 4 * x[0] * x[2];
 }
 
-std::array<double, 3> OuterFunction::derivatives(std::span<const double> all) const {
+std::array<double, 3> OuterFunction::derivatives(const std::array<double, 3>& x) const {
   switch (kind) {
     case Kind::value:
       return {1, 0, 0};
     case Kind::difference:
       return {1, -1, 0};
     case Kind::one_minus_square:
-      return {-2 * all[registers[0]], 0, 0};
+      return {-2 * x[0], 0, 0};
     case Kind::discriminant:
       break;
   }
-  return {-4 * all[registers[2]], 2 * all[registers[1]], -4 * all[registers[0]]};
+  return {-4 * x[2], 2 * x[1], -4 * x[0]};
 }
 
 OuterPlan::OuterPlan(const SlicePlan& plan) {
@@ -123,6 +123,9 @@ OuterPlan::OuterPlan(const SlicePlan& plan) {
       shapes.push_back(Shape::conic);
     }
   }
+  std::vector<std::uint32_t> all(program.registers());
+  std::iota(all.begin(), all.end(), 0);
+  stage.emplace(program, 1, all);
 }
 
 }  // namespace pkm::generic::corner_curves

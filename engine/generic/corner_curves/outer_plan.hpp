@@ -7,6 +7,9 @@
 // parallel lines.
 #pragma once
 
+#include <optional>
+
+#include "engine/expression/batch_stage.hpp"
 #include "engine/generic/slice_plan.hpp"
 
 namespace pkm::generic::corner_curves {
@@ -21,9 +24,10 @@ struct OuterFunction {
   /// true: the function is a constraint, so that slices in which it is negative have no feasible point.
   bool is_required = false;
 
-  double value(std::span<const double> all) const;
-  /// Derivatives of the function with respect to its arguments. @param all  values of all registers of the program
-  std::array<double, 3> derivatives(std::span<const double> all) const;
+  /// Value of the function, and its derivatives with respect to its arguments.
+  /// @param x  values of the arguments; those that the function does not have are not read
+  double value(const std::array<double, 3>& x) const;
+  std::array<double, 3> derivatives(const std::array<double, 3>& x) const;
   std::size_t arguments() const {
     return kind == Kind::value || kind == Kind::one_minus_square ? 1 : kind == Kind::difference ? 2 : 3;
   }
@@ -36,6 +40,8 @@ enum class Shape : std::uint8_t { constant, line, circle, strip_along_v, strip_a
 struct OuterPlan {
   std::vector<Shape> shapes;  ///< shape of each surface in a slice, by surface
   std::vector<OuterFunction> functions;
+  /// The program's stage of t, with rows of all registers; set if corner curves can integrate the slices.
+  std::optional<expression::BatchStage> stage;
   std::string why_not;  ///< reason why corner curves cannot integrate the slices; "" if they can
 
   explicit OuterPlan(const SlicePlan& plan);

@@ -7,6 +7,7 @@
 // and where roots are closer to each other than the error resolves.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "engine/generic/corner_curves/chebyshev.hpp"
@@ -28,7 +29,7 @@ struct Root {
 /// @param rounding  bound of the rounding errors of the interpolated values
 inline double interpolation_error(const Samples& coefficients, double rounding) {
   double tail = 0;
-  for (std::size_t k = kNodes - 4; k < kNodes; ++k) tail = std::fmax(tail, std::fabs(coefficients[k]));
+  for (std::size_t k = kNodes - 4; k < kNodes; ++k) tail = std::max(tail, std::fabs(coefficients[k]));
   return 4 * tail + rounding;
 }
 

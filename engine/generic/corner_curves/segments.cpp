@@ -101,14 +101,26 @@ class Divider {
     auto& r = s_.registers;
     s_.nodes.surfaces.resize(plan_.surfaces.size());
     s_.functions.resize(outer_.functions.size());
-    for (std::size_t n = 0; n < kNodes; ++n) {
-      run_outer_stage(plan_, map_node(range, 0.5 * (1 + chebyshev_nodes()[n])).point, r);
-      for (std::size_t k = 0; k < plan_.surfaces.size(); ++k)
-        for (std::size_t i = 0; i < 6; ++i) s_.nodes.surfaces[k][i][n] = r[plan_.surfaces[k].coefficients[i]];
-      for (const std::size_t upper : {0, 1}) s_.nodes.v[upper][n] = r[plan_.range[1][upper]];
-      for (std::size_t f = 0; f < outer_.functions.size(); ++f)
-        s_.functions[f].values[n] = outer_.functions[f].value(r);
+    run_outer_stage(outer_, range, kNodes, r, s_.rows);
+    const auto at_nodes = [&](std::uint32_t at, Samples& values) {
+      const expression::Operand operand = outer_.stage->operand(at);
+      if (operand.row)
+        std::copy_n(&s_.rows[operand.index * expression::kRow], kNodes, values.begin());
+      else
+        values.fill(r[at]);
+    };
+    for (std::size_t k = 0; k < plan_.surfaces.size(); ++k)
+      for (std::size_t i = 0; i < 6; ++i) at_nodes(plan_.surfaces[k].coefficients[i], s_.nodes.surfaces[k][i]);
+    for (const std::size_t upper : {0, 1}) at_nodes(plan_.range[1][upper], s_.nodes.v[upper]);
+    std::array<Samples, 3> arguments{};
+    for (std::size_t f = 0; f < outer_.functions.size(); ++f) {
+      const OuterFunction& function = outer_.functions[f];
+      for (std::size_t i = 0; i < function.arguments(); ++i) at_nodes(function.registers[i], arguments[i]);
+      for (std::size_t n = 0; n < kNodes; ++n)
+        s_.functions[f].values[n] = function.value({arguments[0][n], arguments[1][n], arguments[2][n]});
     }
+    // The frame and the formula read the registers.
+    run_outer_stage(plan_, map_node(range, 0.5 * (1 + chebyshev_nodes()[kNodes - 1])).point, r);
     s_.runs += static_cast<long>(kNodes);
   }
 
@@ -119,7 +131,7 @@ class Divider {
     if (defined == 0) return State::undefined;
     if (defined < static_cast<std::ptrdiff_t>(kNodes)) return State::pending;
     double largest = 0;
-    for (const double value : values) largest = std::fmax(largest, std::fabs(value));
+    for (const double value : values) largest = std::max(largest, std::fabs(value));
     if (largest == 0) return State::resolved;  // the function is 0 everywhere
     Samples series;
     to_coefficients(values, series);
@@ -170,6 +182,16 @@ class Divider {
 void run_outer_stage(const SlicePlan& plan, double t, std::span<double> registers) {
   for (const auto& input : plan.program.stages()[1].inputs) registers[input.to] = t;
   plan.program.run<double>(1, registers);
+}
+
+void run_outer_stage(const OuterPlan& outer, const OuterRange& range, std::size_t nodes,
+                     std::span<const double> registers, expression::Rows& rows) {
+  rows.resize(outer.stage->slots() * expression::kRow);
+  for (std::size_t n = 0; n < nodes; ++n) {
+    const double t = map_node(range, 0.5 * (1 + chebyshev_node(n, nodes))).point;
+    for (const std::uint32_t slot : outer.stage->inputs()) rows[slot * expression::kRow + n] = t;
+  }
+  outer.stage->run(registers.data(), rows.data(), nodes);
 }
 
 bool divide(const SlicePlan& plan, const OuterPlan& outer, SegmentScratch& scratch) {

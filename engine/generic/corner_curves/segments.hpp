@@ -44,6 +44,7 @@ struct SegmentScratch {
     std::vector<char> known;
   };
   std::vector<double> registers;
+  expression::Rows rows;  ///< rows of OuterPlan::stage, with one value per Chebyshev node
   NodeValues nodes;
   std::vector<Sampled> functions;
   std::vector<Root> roots;
@@ -59,6 +60,9 @@ struct SegmentScratch {
 
 /// Evaluates that stage of the program which depends on the outer coordinate, at the value t of this coordinate.
 void run_outer_stage(const SlicePlan& plan, double t, std::span<double> registers);
+/// The same for t at Chebyshev nodes of a range (8, 16, 24 or kNodes): computes the rows of OuterPlan::stage.
+void run_outer_stage(const OuterPlan& outer, const OuterRange& range, std::size_t nodes,
+                     std::span<const double> registers, expression::Rows& rows);
 
 /// Divides the range of the outer coordinate into segments for a design, and decomposes the slices of those segments
 /// that have feasible points.

@@ -120,7 +120,7 @@ void SliceCurves::add_conic(std::size_t surface, const std::array<Samples, 6>& c
     xx[n] = scale * scale * c[3][n];
     xy[n] = scale * scale * c[4][n];
     yy[n] = scale * scale * c[5][n];
-    for (const Samples* each : {&constant, &u, &w, &xx, &xy, &yy}) largest = std::fmax(largest, std::fabs((*each)[n]));
+    for (const Samples* each : {&constant, &u, &w, &xx, &xy, &yy}) largest = std::max(largest, std::fabs((*each)[n]));
   }
   double sign = 0;
   for (const Samples* each : {&xx, &xy, &yy})
@@ -179,8 +179,8 @@ bool SliceCurves::add_surface(std::size_t surface, Shape shape, const std::array
       double smallest = std::hypot(c[1][0], c[2][0]), largest = smallest;
       for (std::size_t n = 0; n < kNodes; ++n) {
         const double size = std::sqrt(c[1][n] * c[1][n] + c[2][n] * c[2][n]);
-        smallest = std::fmin(smallest, size);
-        largest = std::fmax(largest, size);
+        smallest = std::min(smallest, size);
+        largest = std::max(largest, size);
         curve.values[0][n] = c[1][n] / size;
         curve.values[1][n] = c[2][n] / size;
         curve.values[2][n] = (c[0][n] + c[1][n] * frame.v + c[2][n] * frame.z) / (size * frame.scale);

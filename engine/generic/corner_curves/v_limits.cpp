@@ -154,7 +154,7 @@ class LimitRootFinder {
     }
     const auto slope_at = [&](double v) {
       evaluate_limits_at_v(plan_, v, s_);
-      search.scale = std::fmax(search.scale, std::fabs(s_.registers[at(search.limit, 0)]));
+      search.scale = std::max(search.scale, std::fabs(s_.registers[at(search.limit, 0)]));
       return s_.registers[at(search.limit, 1)] * search.curvature;
     };
     search.has_extremum = search.has_extremum && slope_at(search.lower) < 0 && slope_at(search.upper) > 0;
@@ -214,7 +214,7 @@ class LimitRootFinder {
     }
     if (!search.has_extremum) return false;
     double largest = 0;
-    for (const double value : search.value_there) largest = std::fmax(largest, std::fabs(value));
+    for (const double value : search.value_there) largest = std::max(largest, std::fabs(value));
     Samples series;
     to_coefficients(search.value_there, series);
     const double error = interpolation_error(series, 1e-15 * std::fmax(largest, search.scale));

@@ -13,6 +13,7 @@ class Volume {
     std::vector<CurveAdjoints> by_curve;
     std::vector<bool> is_active;  ///< for each boundary curve of a segment, whether a vertex lies on it
     std::vector<double> adjoints, own;
+    expression::Rows row_adjoints;  ///< adjoints of SegmentScratch::rows; 0 between calls
 
     /// Amount of work of the last measure(), in an arbitrary unit that does not depend on the computer.
     double work() const;
@@ -43,7 +44,8 @@ class Volume {
   /// Whether the constraints that depend on the design only are satisfied.
   bool can_be_feasible(const SegmentScratch& scratch) const;
   void add_segment_gradient(const Segment& segment, Scratch& scratch) const;
-  void add_node_gradient(const Segment& segment, std::size_t node, double tau, Scratch& scratch) const;
+  void add_curve_gradient(const Segment& segment, std::size_t curve, std::size_t nodes, Scratch& scratch) const;
+  double add_limits_gradient(const Segment& segment, std::size_t node, double tau, Scratch& scratch) const;
   void add_limit_gradient(std::size_t limit, double v, double adjoint, Scratch& scratch) const;
   void add_end_gradient(const SegmentEnd& end, bool upper, double derivative, Scratch& scratch) const;
 
