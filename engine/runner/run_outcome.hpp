@@ -19,7 +19,7 @@ namespace pkm {
 
 /// Version of the numerical behaviour of optimisers and workspace analyses. A study is resumed only by a program of the
 /// same version. To be increased with every change that alters the sequence of evaluations of a given seed.
-inline constexpr std::int64_t kAlgorithms = 11;
+inline constexpr std::int64_t kAlgorithms = 12;
 
 /// Program version and arguments, which must be the same on all MPI ranks.
 struct ProgramVersion {

@@ -39,7 +39,8 @@ const OldStudy kOldStudies[] = {{"interrupted-schema-1", 1, "0.1.0 (259d3de3a709
                                 {"interrupted-algorithms-7", 7, "0.1.0 (4db1aebb6315+changes)", {"nsga2", "nlopt"}},
                                 {"interrupted-algorithms-8", 8, "0.1.0 (8d634649c855+changes)", {"nsga2", "nlopt"}},
                                 {"interrupted-algorithms-9", 9, "0.1.0 (ae6b4170b257)", {"nsga2", "nlopt"}},
-                                {"interrupted-algorithms-10", 10, "0.2.0 (414ccd7fc445+changes)", {"nsga2", "nlopt"}}};
+                                {"interrupted-algorithms-10", 10, "0.2.0 (414ccd7fc445+changes)", {"nsga2", "nlopt"}},
+                                {"interrupted-algorithms-11", 11, "0.2.0 (de8f699445c8)", {"nsga2", "nlopt"}}};
 
 class OldStudies : public StudyProgram, public ::testing::WithParamInterface<OldStudy> {
  protected:
