@@ -72,6 +72,7 @@ struct BoundaryCurve {
   std::size_t terms = kNodes;    ///< number of leading coefficients of `series` that are in use
   double tail = 0;               ///< interpolation error of `series`, estimated from the last coefficients
   double error = 0;              ///< `tail` plus a bound of the rounding errors
+  double merged = 0;             ///< largest difference from the values of equal curves that this one stands for
   std::array<double, 3> size{};  ///< maximum over tau of |u|, of |w| and of |c|
 
   bool is_circle() const { return kind == Kind::circle; }

@@ -8,9 +8,6 @@
 namespace pkm::generic::corner_curves {
 namespace {
 
-// Two curves count as equal if the differences of their functions u, w and c, relative to 1 + the magnitude of the
-// function, are at most this.
-constexpr double kSame = 1e-12;
 // A curve does not pass through a rectangle if |h| is larger than this everywhere in the rectangle, which is enlarged
 // by the same amount.
 constexpr double kMargin = 1e-9;
@@ -58,15 +55,28 @@ Range values_in(const BoundaryCurve& curve, const Range& x, const Range& y) {
   return {a.low + b.low - c.high, a.high + b.high - c.low};
 }
 
-bool is_same(const BoundaryCurve& a, const BoundaryCurve& b) {
-  if (a.kind != b.kind) return false;
-  const auto are_same = [](const std::array<Samples, 3>& x, const std::array<Samples, 3>& y) {
+/// Accuracy of the functions u, w and c of a boundary curve: curves that differ by less count as equal. Roots of
+/// quadratics and of limits have larger rounding errors where two of them are about to merge.
+double accuracy_of(CurveSource::Kind kind) {
+  using Kind = CurveSource::Kind;
+  return kind == Kind::lower_root || kind == Kind::upper_root || kind == Kind::limit ? 1e-10 : 1e-12;
+}
+
+/// Maximum difference of the values of two curves of the same kind, relative to 1 + the magnitude of the value;
+/// std::nullopt if it is larger than `most`, or if the curves are of different kinds.
+std::optional<double> difference(const BoundaryCurve& a, const BoundaryCurve& b, double most) {
+  if (a.kind != b.kind) return {};
+  double largest = 0;
+  const auto compare = [&](const std::array<Samples, 3>& x, const std::array<Samples, 3>& y) {
     for (std::size_t f = 0; f < 3; ++f)
-      for (std::size_t n = 0; n < kNodes; ++n)
-        if (std::fabs(x[f][n] - y[f][n]) > kSame * (1 + std::fabs(x[f][n]))) return false;
+      for (std::size_t n = 0; n < kNodes; ++n) {
+        largest = std::max(largest, std::fabs(x[f][n] - y[f][n]) / (1 + std::fabs(x[f][n])));
+        if (largest > most) return false;
+      }
     return true;
   };
-  return are_same(a.values, b.values) && (!a.is_conic() || are_same(a.quadratic->values, b.quadratic->values));
+  if (!compare(a.values, b.values) || (a.is_conic() && !compare(a.quadratic->values, b.quadratic->values))) return {};
+  return largest;
 }
 
 bool is_defined(const std::array<Samples, 6>& c, bool& nowhere) {
@@ -80,8 +90,13 @@ bool is_defined(const std::array<Samples, 6>& c, bool& nowhere) {
 }  // namespace
 
 std::size_t SliceCurves::add_curve(const BoundaryCurve& curve, const CurveSource& source) {
-  const auto same = std::ranges::find_if(curves, [&](const BoundaryCurve& known) { return is_same(known, curve); });
-  if (same != curves.end()) return static_cast<std::size_t>(same - curves.begin());
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const double most = std::max(accuracy_of(sources[i].kind), accuracy_of(source.kind));
+    const auto between = difference(curves[i], curve, most);
+    if (!between) continue;
+    curves[i].merged = std::max(curves[i].merged, *between);
+    return i;
+  }
   curves.push_back(curve);
   sources.push_back(source);
   formula.literals.emplace_back();
@@ -394,13 +409,8 @@ SliceCurves::Status SliceCurves::build(const SlicePlan& plan, const OuterPlan& o
     add_bound(line, upper);
   }
   if (!add_limits(limits) || curves.size() > kMaxCurves) return Status::unresolved;
-  // Maximum interpolation errors of boundary curves; that of limits (constraints that do not depend on z) is larger,
-  // because their roots have larger rounding errors near folds.
-  constexpr double kConverged = 1e-12, kLimitConverged = 1e-10;
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    const bool is_limit = sources[i].kind == CurveSource::Kind::limit;
-    if (!curves[i].interpolate(is_limit ? kLimitConverged : kConverged)) return Status::unresolved;
-  }
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    if (!curves[i].interpolate(accuracy_of(sources[i].kind))) return Status::unresolved;
   return simplify();
 }
 

@@ -25,7 +25,7 @@ bool Volume::can_be_feasible(const SegmentScratch& scratch) const {
 }
 
 bool Volume::find_ranges(std::span<const double> inputs, Scratch& scratch) const {
-  constexpr double kBalanced = 1e-10;  // maximum length in tau on which decisions may contradict each other
+  constexpr double kBalanced = 1e-9;  // maximum length in tau on which decisions may contradict each other
   SegmentScratch& s = scratch.segments;
   s.count = 0;
   const expression::Program& program = plan_.program;
@@ -92,9 +92,10 @@ std::optional<Integral<double>> Volume::measure(std::span<const double> inputs, 
     // the area that they enclose is of the order of its square. All three curves are affected by the same decision.
     double per_slice = decomposition.unbalanced + decomposition.undecided * 1e-12;
     // An arc in the frame is shorter than the perimeter of the frame, 8; its centre is displaced by at most sqrt(2)
-    // times the interpolation error (`tail`), and a conic by about the interpolation errors of its six coefficients,
-    // divided by the magnitude of its gradient.
-    for (const BoundaryCurve& curve : segment.slices.curves) per_slice += (curve.is_conic() ? 200 : 12) * curve.tail;
+    // times the error of its functions (the interpolation error `tail`, and `merged`), and a conic by about the errors
+    // of its six coefficients, divided by the magnitude of its gradient.
+    for (const BoundaryCurve& curve : segment.slices.curves)
+      per_slice += (curve.is_conic() ? 200 : 12) * (curve.tail + curve.merged);
     total.error += scale(segment) * per_slice * 0.5 * (segment.upper.at - segment.lower.at);
   }
   // If no feasible point was found, planar slices have to decide whether the workspace is empty or was missed.

@@ -120,6 +120,27 @@ TEST(CornerCurveDesigns, OfLimitsOfTwoCoordinatesAreThoseOfSlices) {
   }
 }
 
+/// Where the two lines that bound a constraint are about to merge, their rounding errors are larger than those of other
+/// curves, and equal lines of several constraints differ by them.
+TEST(CornerCurveDesigns, WithLinesThatMergeAreNotLeftToSlices) {
+  for (const char* name : {"3crr-r-cru", "quadrupteron"}) {
+    const Mechanism& mechanism = *test::described(name);
+    const WorkspacePlan plan = test::columns(mechanism.info());
+    constexpr unsigned kDesigns = 60;
+    unsigned by_slices = 0;
+    for (unsigned k = 0; k < kDesigns; ++k) {
+      Stream random(31, 0, k, Stream::Use::start);
+      std::vector<double> design = test::nominal(mechanism.info());
+      for (double& each : design) each *= 0.95 + 0.1 * random.u01();
+      const WorkspaceResult<double> found = test::survey(mechanism, design, plan);
+      EXPECT_GT(found.volume, 0);
+      EXPECT_LT(found.error, 1e-8);
+      by_slices += found.is_sampled;
+    }
+    EXPECT_LE(by_slices, 1U) << name;
+  }
+}
+
 /// Legs with a stroke of 13 mm: slices miss most of the components. The bounds are those of `pkmopt certify`.
 TEST(CornerCurveDesigns, OfThinStrokesLieInTheCertifiedBounds) {
   const Mechanism& mechanism = *test::described("3-rpr");
