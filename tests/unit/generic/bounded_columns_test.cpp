@@ -130,8 +130,8 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 
 TEST_P(BoundedColumns, LieWithinTheBounds) {
   const char* const asked = std::getenv("PKM_BOUNDED_DESIGNS");
-  // slices of Par4 that contain its rotation take seconds
-  const unsigned usual = GetParam() == "par4" ? 5 : 25;
+  // sweeps that contain a rotation are integrated by slices, those of Par4 and of the Gough platform in seconds
+  const unsigned usual = GetParam() == "par4" ? 5 : GetParam() == "gough" ? 25 : 100;
   const unsigned designs = asked ? static_cast<unsigned>(std::atoi(asked)) : usual;
   const std::vector<WorkspacePlan> all = plans();
   constexpr double kGap = 1e-2;  // relative
