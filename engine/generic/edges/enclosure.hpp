@@ -22,6 +22,8 @@ namespace pkm::generic::edges {
 
 using Vector3 = Vector<double, 3>;
 inline double norm(const Vector3& v) { return std::sqrt(dot(v, v)); }
+/// Largest magnitude of a component.
+inline double largest(const Vector3& v) { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
 
 struct Enclosure {
   double value = 0, slope = 0;  ///< value and first derivative of the function at the middle of the interval
@@ -103,5 +105,7 @@ inline Enclosure sinc(const Enclosure& x, const SineCosine& of_x) {
 }
 
 using Enclosure3 = Vector<Enclosure, 3>;
+inline Vector3 values(const Enclosure3& p) { return {{p[0].value, p[1].value, p[2].value}}; }
+inline Vector3 slopes(const Enclosure3& p) { return {{p[0].slope, p[1].slope, p[2].slope}}; }
 
 }  // namespace pkm::generic::edges

@@ -1,56 +1,33 @@
 #include "engine/generic/edges/solid.hpp"
 
-#include "engine/generic/edges/curves.hpp"
+#include <algorithm>
+
+#include "engine/generic/edges/edge_search.hpp"
 #include "engine/math/quadrature.hpp"
-#include "engine/math/roots.hpp"
 
 namespace pkm::generic::edges {
 namespace {
 
-// Bound of the rounding error of a body's function, relative to the size of the solid raised to the power degree().
-constexpr double kFunctionRounding = 4e-15;
-constexpr int kMaxBisections = 36;
-constexpr long kMaxBoxes = 400'000;
-
-/// A test that all points of an intersection curve have to pass: to belong to a body or, if the curve lies on the
-/// surface of one of the body's faces, to that face.
-struct Test {
-  std::size_t body;
-  const Rule* rule;
-};
-
-/// An interval of u in which all points of an arc are active, i.e. belong to the boundary of the solid.
-struct Range {
-  const Arc* arc;
-  double from, to;
-  double sign;  ///< 1: in the direction of increasing u, the first face is on the left; -1: the second face is
-};
-
-/// A subinterval of an active range, for quadrature.
+/// A subinterval of an edge, for quadrature.
 struct Panel {
-  std::size_t range;
+  std::size_t edge;
   Subinterval<double> interval;
   double value = 0, error = 0;
   /// Integrals along this subinterval for the moments of the first and of the second face.
   std::array<Moments, 2> moments{};
 };
 
-Vector3 values(const Enclosure3& p) { return {{p[0].value, p[1].value, p[2].value}}; }
-Vector3 slopes(const Enclosure3& p) { return {{p[0].slope, p[1].slope, p[2].slope}}; }
-double largest(const Vector3& v) { return std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])}); }
-
 }  // namespace
 
+/// Computes sums of integrals over the edges of a solid.
 class Evaluator {
  public:
   EdgeVolume run(const Solid& solid, double tolerance, std::vector<Body>* gradient) {
-    reset(solid);
-    constexpr std::size_t kMaxBodies = 63;
-    if (bodies_.size() > kMaxBodies || !add_curves()) {
-      result_.is_supported = false;
-      return result_;
-    }
-    for (const Arc& arc : arcs_) search(arc);
+    result_ = {};
+    result_.is_supported = search_.find(solid);
+    if (!result_.is_supported) return result_;
+    result_.is_closed = search_.is_complete();
+    result_.boxes = search_.boxes();
     close();
     choose_poles();
     integrate(tolerance);
@@ -59,309 +36,41 @@ class Evaluator {
   }
 
  private:
-  void reset(const Solid& solid) {
-    bodies_.clear();
-    faces_.clear();
-    curves_.clear();
-    arcs_.clear();
-    ranges_.clear();
-    undecided_ = 0;
-    result_ = {};
-    for (const Body& body : solid.bodies) bodies_.emplace_back(body);
-    size_ = bound_ = solid.bound;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      add_faces(bodies_[i], i, faces_);
-      size_ = std::max(size_, std::fabs(bodies_[i].radius) + bodies_[i].crank + largest(bodies_[i].centre));
-    }
-    for (std::size_t i = 1; i < powers_.size(); ++i) powers_[i] = powers_[i - 1] * size_;
-  }
-
-  bool add_curves() {
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-      for (std::size_t j = i + 1; j < faces_.size(); ++j) {
-        const Face &a = faces_[i], &b = faces_[j];
-        if (a.number != b.number) {
-          if (!add_intersection(a, b, bound_, curves_)) return false;
-        } else if (b.part == Part::fold) {
-          curves_.push_back(equator(a, b));
-        }
-      }
-    }
-    for (const Curve& curve : curves_) {
-      if (curve.kind == Curve::Kind::implicit)
-        trace(curve);
-      else if (!add_arcs(curve, bound_, roots_, arcs_))
-        result_.is_closed = false;
-    }
-    return true;
-  }
-
-  /// Adds the arcs of an implicit curve on a torus, except those that cannot be active.
-  void trace(const Curve& curve) {
-    const PreparedBody& torus = *curve.faces[0]->body;
-    set_tests(curve);
-    long boxes = 0;
-    constexpr double kFirst = 0.8;  // maximum width of the initial boxes of the search [rad]
-    // Value at which the range of the angle b starts [rad]; it is arbitrary, so that a symmetric solid is unlikely to
-    // have a special point there.
-    constexpr double kStart = 2.9;
-    const double width = torus.to - torus.from;
-    const int along_q = static_cast<int>(width / kFirst) + 1, along_b = static_cast<int>(2 * kPi / kFirst) + 1;
-    const std::array<double, 2> half{0.5 * width / along_q, kPi / along_b};
-    for (int i = 0; i < along_q; ++i)
-      for (int j = 0; j < along_b; ++j)
-        trace(curve, {{torus.from + (2 * i + 1) * half[0], kStart + (2 * j + 1) * half[1]}, half}, boxes);
-  }
-
-  void trace(const Curve& curve, const TorusBox& box, long& boxes) {
-    constexpr long kMaxTraced = 20'000;
-    if (!result_.is_closed) return;
-    if (++boxes > kMaxTraced) {
-      result_.is_closed = false;
-      return;
-    }
-    ++result_.boxes;
-    const CurveInBox found = find_curve_in(curve.function, box, kFunctionRounding * curve.function.size());
-    if (found.state == CurveInBox::State::absent || is_inactive(curve, box)) return;
-    if (found.state == CurveInBox::State::unresolved) {
-      const std::size_t i = found.longer;
-      TorusBox part = box;
-      part.half[i] *= 0.5;
-      for (const double side : {-1.0, 1.0}) {
-        part.middle[i] = box.middle[i] + side * part.half[i];
-        trace(curve, part, boxes);
-      }
-    } else {
-      arcs_.push_back(
-          {.curve = &curve, .t_0 = found.arc->from, .length = found.arc->to - found.arc->from, .implicit = *found.arc});
-    }
-  }
-
-  /// Whether every point of a box of the torus's angles fails one of the tests, so that no part of the curve in the box
-  /// is active.
-  bool is_inactive(const Curve& curve, const TorusBox& box) const {
-    const PreparedBody& torus = *curve.faces[0]->body;
-    CurvePoint at = point_on(*curve.faces[0], box.middle[0], box.middle[1]);
-    const double distance = (torus.crank + torus.radius) * box.half[0] + torus.radius * box.half[1];
-    // Enclose the coordinates of all points in the box: as functions, with slope 0 at the middle, of a variable in [-1,
-    // 1].
-    for (Enclosure& x : at.p) x = {x.value, 0, 2 * distance, 1};
-    at.square = {at.square.value, 0, 2 * distance * (2 * norm(values(at.p)) + distance), 1};
-    std::array<Enclosure, kFunctions> values;
-    return std::ranges::any_of(tests_, [&](const Test& test) {
-      const SignSets possible = examine(test, at, values, [&](const Enclosure& f, std::size_t k) {
-        return sign(f, powers_[degree(bodies_[test.body], k)], 0);
-      });
-      return (test.rule->holds & possible) == 0;
-    });
-  }
-
-  // Search for the active intervals of arcs.
-
-  using Tests = std::uint64_t;  // set of tests: bit i stands for tests_[i]
-
-  /// Sets tests_: the tests that points of a curve have to pass.
-  void set_tests(const Curve& curve) {
-    const auto& [a, b] = curve.faces;
-    tests_.clear();
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (i != a->number && i != b->number) {
-        tests_.push_back({i, &membership(bodies_[i], nullptr)});
-      } else if (a->number != b->number && bodies_[i].kind >= Body::Kind::slide) {
-        // A curve on a torus lies in the range of this torus by construction, so that no test is needed.
-        const Face& face = i == a->number ? *a : *b;
-        if (curve.kind < Curve::Kind::on_torus || &face != a)
-          tests_.push_back({i, &membership(bodies_[i], &face.part)});
-      }
-    }
-  }
-
-  void search(const Arc& arc) {
-    set_tests(*arc.curve);
-    arc_ = &arc;
-    first_range_ = ranges_.size();
-    // Divide long arcs: enclosures over more than a quarter of a circle are too wide to decide any test.
-    const int parts = std::max(1, static_cast<int>(arc.length / 1.6));
-    for (int i = 0; i < parts; ++i)
-      search(arc.length * i / parts, arc.length * (i + 1) / parts, 0, (Tests{1} << tests_.size()) - 1);
-  }
-
-  struct Undecided {
-    std::size_t test, function;
-  };
-
-  void search(double from, double to, int depth, Tests tests) {
-    if (++result_.boxes > kMaxBoxes) {
-      result_.is_closed = false;
-      return;
-    }
-    const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
-    const CurvePoint at = point(*arc_, Enclosure::variable(middle, half));
-    undecided_functions_.clear();
-    bool is_monotone = true;
-    const auto keep = [&](std::size_t test, std::size_t number, const Enclosure& f) {
-      undecided_functions_.push_back({test, number});
-      is_monotone = is_monotone && f.is_monotone();
-    };
-    for (std::size_t i = 0; i < tests_.size(); ++i) {
-      if ((tests >> i & 1) == 0) continue;
-      const Rule& rule = *tests_[i].rule;
-      std::array<Enclosure, kFunctions> values;
-      const SignSets possible = examine(tests_[i], at, values, [&](const Enclosure& f, std::size_t k) {
-        return sign(f, powers_[degree(bodies_[tests_[i].body], k)], half);
-      });
-      if ((rule.holds & possible) == 0) {
-        // Try this test first in the next interval, because it often decides that interval, too.
-        if (i > 0 && depth == 0) std::swap(tests_[i], tests_[0]);
-        return;
-      }
-      if ((~rule.holds & possible) == 0) {
-        tests &= ~(Tests{1} << i);
-        continue;
-      }
-      for (std::size_t k = 0; k < kFunctions; ++k)
-        if ((rule.depends[k] & possible) != 0 && (kPositive[k] & possible) != 0 && (~kPositive[k] & possible) != 0)
-          keep(i, k, values[k]);
-    }
-    if (arc_->curve->cut) {
-      const Enclosure f = edges::evaluate(*arc_->curve->cut, at);
-      if (!(std::fabs(f.value) > f.reach() + kFunctionRounding * powers_[2])) keep(tests_.size(), 0, f);
-    }
-    if (undecided_functions_.empty()) {
-      emit(from, to);
-      return;
-    }
-    if (!is_monotone && depth < kMaxBisections) {
-      search(from, middle, depth + 1, tests);
-      search(middle, to, depth + 1, tests);
-      return;
-    }
-    std::vector<double>& ends = ends_;
-    ends.assign({from, to});
-    if (is_monotone) {
-      for (const auto& [test, number] : undecided_functions_)
-        if (const auto root = find_root(test, number, from, to)) ends.push_back(*root);
-    } else {
-      undecided_ += (to - from) * norm(slopes(at.p)) * powers_[2];
-    }
-    std::ranges::sort(ends);
-    for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-      if (ends[i] < ends[i + 1] && is_active(0.5 * (ends[i] + ends[i + 1]), tests)) emit(ends[i], ends[i + 1]);
-  }
-
-  /// The combinations of signs of a body's functions that are possible at a point or in an interval of a curve.
-  /// Evaluates only the functions that matter for the test, and stores them in `values`.
-  /// @param sign_of  sign_of(f, k): sign of the function f with index k, 0 if it is unknown
-  template <class Sign>
-  SignSets examine(const Test& test, const CurvePoint& at, std::array<Enclosure, kFunctions>& values,
-                   const Sign& sign_of) const {
-    const Rule& rule = *test.rule;
-    SignSets possible = ~SignSets{0};
-    for (std::size_t k = 0; k < kFunctions; ++k) {
-      if ((rule.depends[k] & possible) == 0) continue;
-      values[k] = function(bodies_[test.body], k, at);
-      const int is = sign_of(values[k], k);
-      if (is != 0) possible &= is > 0 ? kPositive[k] : ~kPositive[k];
-    }
-    return possible;
-  }
-
-  /// Sign of a function on an interval; 0 if unknown. A function that vanishes on the whole curve counts as positive:
-  /// it has no sign change, so that both signs are correct.
-  static int sign(const Enclosure& f, double power, double half) {
-    const double reach = f.reach();
-    if (f.value - reach > kFunctionRounding * power) return 1;
-    if (f.value + reach < -kFunctionRounding * power) return -1;
-    constexpr double kWide = 1e-3, kVanishing = 1e-12;
-    return half > kWide && std::fabs(f.value) + reach < kVanishing * power ? 1 : 0;
-  }
-
-  Enclosure function_at(std::size_t test, std::size_t number, double u) const {
-    const CurvePoint at = point(*arc_, Enclosure::variable(u, 0));
-    return test == tests_.size() ? edges::evaluate(*arc_->curve->cut, at)
-                                 : function(bodies_[tests_[test].body], number, at);
-  }
-
-  /// The value of u in [from, to] at which a monotone function changes its sign; std::nullopt if it does not change it.
-  std::optional<double> find_root(std::size_t test, std::size_t number, double from, double to) const {
-    const auto at = [&](double u) { return function_at(test, number, u); };
-    const double first = at(from).value, last = at(to).value;
-    const bool rises = last > 0;
-    if (rises == (first > 0)) return {};
-    const auto value_at = [&](double u) {
-      const Enclosure f = at(u);
-      return ValueAndDerivative{f.value, f.slope};
-    };
-    // After a step, the error of Newton's method is of the order of the square of this step.
-    const auto converged = [this](const ValueAndDerivative&, double u, double next) {
-      return std::fabs(next - u) < 1e-9 * arc_->length;
-    };
-    return refine_root_newton(value_at, from, to, first > 0, from - first * ((to - from) / (last - first)), converged);
-  }
-
-  bool is_active(double u, Tests tests) const {
-    const CurvePoint at = point(*arc_, Enclosure::variable(u, 0));
-    for (std::size_t i = 0; i < tests_.size(); ++i)
-      if ((tests >> i & 1) != 0 && !is_in(tests_[i], at)) return false;
-    return true;
-  }
-
-  bool is_in(const Test& test, const CurvePoint& at) const {
-    std::array<Enclosure, kFunctions> values;
-    const auto sign_of = [](const Enclosure& f, std::size_t) { return f.value >= 0 ? 1 : -1; };
-    return (~test.rule->holds & examine(test, at, values, sign_of)) == 0;
-  }
-
-  void emit(double from, double to) {
-    const Enclosure3 at = point(*arc_, Enclosure::variable(0.5 * (from + to), 0)).p;
-    const Vector3 p = values(at), dp = slopes(at);
-    const auto& [a, b] = arc_->curve->faces;
-    const Vector3 n = outward(*a, p);
-    const double side =
-        a->number == b->number ? dot(cross(a->away_from_pole, n), dp) : dot(cross(n, outward(*b, p)), dp);
-    const double sign = side > 0 ? 1 : -1;
-    if (ranges_.size() > first_range_ && ranges_.back().to == from && ranges_.back().sign == sign)
-      ranges_.back().to = to;
-    else
-      ranges_.push_back({arc_, from, to, sign});
-  }
-
-  // The following functions compute sums over the active intervals of the arcs.
-
   /// Checks whether the directed edges of each face form closed curves, and sets `gap` and `is_closed` of the result.
   void close() {
     std::vector<Vector3>& gaps = gaps_;
-    gaps.assign(faces_.size(), {});
-    for (const Range& range : ranges_) {
-      const Vector3 chord = values(point(*range.arc, range.to).p) - values(point(*range.arc, range.from).p);
-      gaps[index(range, 0)] += chord * range.sign;
-      gaps[index(range, 1)] += chord * -range.sign;
+    gaps.assign(search_.faces().size(), {});
+    for (const Edge& edge : search_.edges()) {
+      const Vector3 chord = values(EdgeSearch::point_at(edge, edge.to)) - values(EdgeSearch::point_at(edge, edge.from));
+      gaps[index(edge, 0)] += chord * edge.sign;
+      gaps[index(edge, 1)] += chord * -edge.sign;
     }
     for (const Vector3& gap : gaps) result_.gap = std::max(result_.gap, largest(gap));
     // Where surfaces touch, as those of limbs with a common axis of symmetry do, the ends of edges are known to the
     // square root of the rounding errors. Gap and undecided length are part of the error.
     constexpr double kClosed = 1e-7;
-    if (result_.gap > kClosed * size_ || undecided_ > kClosed * powers_[3]) result_.is_closed = false;
+    if (result_.gap > kClosed * search_.size_to_the(1) || search_.undecided() > kClosed * search_.size_to_the(3))
+      result_.is_closed = false;
   }
 
-  std::size_t index(const Range& range, std::size_t which) const {
-    return static_cast<std::size_t>(range.arc->curve->faces[which] - faces_.data());
+  std::size_t index(const Edge& edge, std::size_t which) const {
+    return static_cast<std::size_t>(edge.arc->curve->faces[which] - search_.faces().data());
   }
 
   /// Chooses for each whole sphere the point at which its differential form is singular (away_from_pole), far from the
   /// edges.
   void choose_poles() {
-    for (Face& face : faces_) {
+    for (Face& face : search_.faces()) {
       if (face.body->kind != Body::Kind::sphere) continue;
       double best = -1;
       for (int i = 0; i < 27; ++i) {
         const Vector3 v{{i % 3 - 1.1, i / 3 % 3 - 0.9, i / 9 - 1.2}};
         const Vector3 t = v * (1 / norm(v));
         double least = 2;
-        for (const Range& range : ranges_) {
-          if (range.arc->curve->faces[0] != &face && range.arc->curve->faces[1] != &face) continue;
+        for (const Edge& edge : search_.edges()) {
+          if (edge.arc->curve->faces[0] != &face && edge.arc->curve->faces[1] != &face) continue;
           for (int k = 0; k <= 4; ++k) {
-            const Vector3 p = values(point(*range.arc, range.from + 0.25 * k * (range.to - range.from)).p);
+            const Vector3 p = values(EdgeSearch::point_at(edge, edge.from + 0.25 * k * (edge.to - edge.from)));
             least = std::min(least, 1 + dot(t, p - face.centre) / face.body->radius);
           }
         }
@@ -373,24 +82,22 @@ class Evaluator {
   }
 
   void integrate(double tolerance) {
-    moments_.assign(faces_.size(), {});
+    moments_.assign(search_.faces().size(), {});
     double sum = 0, error = 0, magnitude = 0;
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-      const Face& face = faces_[i];
+    for (std::size_t i = 0; i < search_.faces().size(); ++i) {
+      const Face& face = search_.faces()[i];
       if (face.body->kind != Body::Kind::sphere) continue;
       const Vector3 pole = face.centre - face.away_from_pole * face.body->radius;
       CurvePoint at{.p = {}, .square = Enclosure(dot(pole, pole))};
       std::ranges::copy(pole, at.p.begin());
-      bool is_active = true;
-      for (std::size_t k = 0; k < bodies_.size() && is_active; ++k)
-        is_active = k == face.number || is_in({k, &membership(bodies_[k], nullptr)}, at);
-      if (!is_active) continue;
+      if (!search_.is_in_others(face.number, at)) continue;
       moments_[i].radius[0] = face.side * 4 * kPi * face.body->radius * face.body->radius;
       sum += three_volumes(face, moments_[i]) / 3;
     }
     std::vector<Panel>& panels = panels_;
     panels.clear();
-    for (std::size_t i = 0; i < ranges_.size(); ++i) panels.push_back({i, {ranges_[i].from, ranges_[i].to}});
+    const std::vector<Edge>& edges = search_.edges();
+    for (std::size_t i = 0; i < edges.size(); ++i) panels.push_back({i, {edges[i].from, edges[i].to}});
     for (Panel& panel : panels) evaluate(panel);
     const auto total = [&](auto member) {
       double all = 0;
@@ -411,24 +118,24 @@ class Evaluator {
       error = total(&Panel::error);
     }
     for (const Panel& panel : panels)
-      for (std::size_t k = 0; k < 2; ++k) moments_[index(ranges_[panel.range], k)].add(panel.moments[k], 1);
+      for (std::size_t k = 0; k < 2; ++k) moments_[index(edges[panel.edge], k)].add(panel.moments[k], 1);
     result_.value = std::max(sum, 0.0);
-    result_.error = error + undecided_ + result_.gap * powers_[2] + 1e-15 * magnitude;
+    result_.error = error + search_.undecided() + result_.gap * search_.size_to_the(2) + 1e-15 * magnitude;
     if (!std::isfinite(sum + result_.error)) result_.is_closed = false;
   }
 
   void evaluate(Panel& panel) {
-    const Range& range = ranges_[panel.range];
+    const Edge& edge = search_.edges()[panel.edge];
     const NestedRule& rule = kronrod_rule();
     const NestedRule::Level& level = rule.level.front();
-    const auto& faces = range.arc->curve->faces;
+    const auto& faces = edge.arc->curve->faces;
     std::array<double, NestedRule::kNodes> f{};
     const double length = panel.interval.upper - panel.interval.lower;
     panel.value = 0;
     panel.moments = {};
     for (std::size_t i = 0; i < level.nodes; ++i) {
-      const Enclosure3 at = point(*range.arc, Enclosure::variable(panel.interval.lower + length * rule.node[i], 0)).p;
-      const Vector3 p = values(at), dp = slopes(at) * (length * range.sign);
+      const Enclosure3 at = EdgeSearch::point_at(edge, panel.interval.lower + length * rule.node[i]);
+      const Vector3 p = values(at), dp = slopes(at) * (length * edge.sign);
       for (std::size_t k = 0; k < 2; ++k) {
         const double sign = k == 0 ? 1 : -1;
         const Moments m = forms(*faces[k], p, dp);
@@ -444,10 +151,10 @@ class Evaluator {
   /// Computes the derivatives of the volume. The derivative with respect to a parameter is the integral of the normal
   /// speed of the faces.
   void differentiate(std::vector<Body>& gradient) const {
-    gradient.assign(bodies_.size(), Body{});
-    for (std::size_t i = 0; i < bodies_.size(); ++i) gradient[i].side = gradient[i].radius = 0;
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-      const Face& face = faces_[i];
+    gradient.assign(search_.bodies().size(), Body{});
+    for (std::size_t i = 0; i < search_.bodies().size(); ++i) gradient[i].side = gradient[i].radius = 0;
+    for (std::size_t i = 0; i < search_.faces().size(); ++i) {
+      const Face& face = search_.faces()[i];
       const PreparedBody& body = *face.body;
       const Moments& m = moments_[i];
       Body& by = gradient[face.number];
@@ -480,26 +187,11 @@ class Evaluator {
     }
   }
 
-  double bound_ = 0, size_ = 0;
-  std::array<double, 5> powers_{1};
-  std::vector<PreparedBody> bodies_;
-  std::vector<Face> faces_;
-  std::vector<Curve> curves_;
-  std::vector<Arc> arcs_;
-  std::vector<Range> ranges_;
-  std::vector<Moments> moments_;
-  std::vector<Vector3> gaps_;
+  EdgeSearch search_;
+  std::vector<Moments> moments_;  ///< of each face
+  std::vector<Vector3> gaps_;     ///< of each face, the sum of the vectors along its edges
   std::vector<Panel> panels_;
-  std::vector<CurveRoot> roots_;
-  double undecided_ = 0;
   EdgeVolume result_;
-
-  // Variables of the search along the arc arc_.
-  const Arc* arc_ = nullptr;
-  std::vector<Test> tests_;
-  std::vector<Undecided> undecided_functions_;
-  std::vector<double> ends_;
-  std::size_t first_range_ = 0;
 };
 
 VolumeScratch::VolumeScratch() : evaluator_(std::make_unique<Evaluator>()) {}
