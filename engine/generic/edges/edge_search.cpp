@@ -161,6 +161,7 @@ void EdgeSearch::search(double from, double to, int depth, Tests tests) {
   const CurvePoint at = point(*arc_, Enclosure::variable(middle, half));
   undecided_functions_.clear();
   bool is_monotone = true;
+  std::array<Enclosure, kFunctions> values;
   const auto keep = [&](std::size_t test, std::size_t number, const Enclosure& f) {
     undecided_functions_.push_back({test, number});
     is_monotone = is_monotone && f.is_monotone();
@@ -168,7 +169,6 @@ void EdgeSearch::search(double from, double to, int depth, Tests tests) {
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     if ((tests >> i & 1) == 0) continue;
     const Rule& rule = *tests_[i].rule;
-    std::array<Enclosure, kFunctions> values;
     const SignSets possible = examine(tests_[i], at, values, [&](const Enclosure& f, std::size_t k) {
       return sign(f, powers_[degree(bodies_[tests_[i].body], k)], half);
     });

@@ -105,6 +105,13 @@ inline Enclosure sinc(const Enclosure& x, const SineCosine& of_x) {
 }
 
 using Enclosure3 = Vector<Enclosure, 3>;
+/// The sum of p[i] v[i], with the operations of the template dot() but for the widths, which are equal.
+inline Enclosure dot(const Enclosure3& p, const Vector3& v) {
+  return {p[0].value * v[0] + p[1].value * v[1] + p[2].value * v[2],
+          p[0].slope * v[0] + p[1].slope * v[1] + p[2].slope * v[2],
+          p[0].bend * std::fabs(v[0]) + p[1].bend * std::fabs(v[1]) + p[2].bend * std::fabs(v[2]),
+          std::max({p[0].h, p[1].h, p[2].h})};
+}
 inline Vector3 values(const Enclosure3& p) { return {{p[0].value, p[1].value, p[2].value}}; }
 inline Vector3 slopes(const Enclosure3& p) { return {{p[0].slope, p[1].slope, p[2].slope}}; }
 
