@@ -113,7 +113,8 @@ void Volume::add_curve_gradient(const Segment& segment, std::size_t curve, std::
   }
   std::array<AtNodes, 6> c;  // coefficients of the surface
   for (std::size_t i = 0; i < c.size(); ++i) c[i] = at_nodes(plan_.surfaces[source.surface].coefficients[i]);
-  for (std::size_t n = 0; n < nodes; ++n) switch (source.kind) {
+  for (std::size_t n = 0; n < nodes; ++n) {
+    switch (source.kind) {
       case Kind::circle: {
         // The circle has the centre (-c1/(2 c3), -c2/(2 c3)) and the squared radius |centre|^2 - c0/c3.
         const double centre_v = -0.5 * c[1][n] / c[3][n], centre_z = -0.5 * c[2][n] / c[3][n];
@@ -163,6 +164,7 @@ void Volume::add_curve_gradient(const Segment& segment, std::size_t curve, std::
       case Kind::limit:
         break;
     }
+  }
 }
 
 /// Adds the adjoints of the limits' functions at a Chebyshev node.
