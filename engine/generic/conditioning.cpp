@@ -1,5 +1,6 @@
 #include "engine/generic/conditioning.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/SVD>
@@ -90,6 +91,26 @@ void check(const MechanismInfo& info, const CharacteristicLengths<S>& lengths) {
   check_one("characteristic_radius", mixes_units(info.joints), lengths.radius);
 }
 
+template <class S>
+bool is_equal(const S& x, const S& y) {
+  if constexpr (Derivative<S>)
+    return x.a == y.a && std::ranges::equal(x.v.d, y.v.d);
+  else
+    return x == y;
+}
+template <class S>
+bool is_equal(const AxisMatrix<S>& A, const AxisMatrix<S>& B) {
+  for (std::size_t i = 0; i < A.size(); ++i)
+    if (!is_equal(A[i], B[i])) return false;
+  return true;
+}
+template <class S>
+bool has_equal_rotations(const Model& model, const Pose<S>& one, const Pose<S>& other) {
+  for (std::size_t i = 0; i < one.size(); ++i)
+    if (model.rotation_axes[i] && !is_equal(one[i], other[i])) return false;
+  return true;
+}
+
 }  // namespace
 
 void check_lengths(const Evaluation& evaluation, std::span<const double> parameters) {
@@ -103,12 +124,14 @@ std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths
   const bool mixed = mixes_units(info.coordinates), mixed_drives = mixes_units(info.joints);
   if ((mixed && !is_positive(lengths.length)) || (mixed_drives && !is_positive(lengths.radius))) return {};
   AxisMatrix<S> scaled = included_columns<S>(model, AxisMatrix<S>(J * rates_by_twist<S>(model, pose)));
-  for (std::size_t i = 0; i < scaled.rows(); ++i)
-    for (std::size_t j = 0; j < scaled.cols(); ++j) {
-      if (mixed && info.coordinates[included_coordinate(model, j)].turns()) scaled(i, j) /= *lengths.length;
-      if (mixed_drives && info.joints[i].turns()) scaled(i, j) *= *lengths.radius;
-      if (!std::isfinite(value_of(scaled(i, j)))) return {};
-    }
+  for (std::size_t j = 0; mixed && j < scaled.cols(); ++j)
+    if (info.coordinates[included_coordinate(model, j)].turns())
+      for (std::size_t i = 0; i < scaled.rows(); ++i) scaled(i, j) /= *lengths.length;
+  for (std::size_t i = 0; mixed_drives && i < scaled.rows(); ++i)
+    if (info.joints[i].turns())
+      for (std::size_t j = 0; j < scaled.cols(); ++j) scaled(i, j) *= *lengths.radius;
+  for (std::size_t i = 0; i < scaled.size(); ++i)
+    if (!std::isfinite(value_of(scaled[i]))) return {};
   return singular_ratio<S>(scaled);
 }
 
@@ -118,10 +141,15 @@ S SampleConditioning::at(const Pose<S>& pose, ConditioningScratch<S>& scratch) c
   const Inputs& of = e_.model.inputs;
   AxisMatrix<S> J(of.joints, of.coordinates);
   for (std::size_t i = 0; i < J.size(); ++i) J[i] = scratch.registers[batch_.outputs()[i]];
-  const std::optional<S> found = conditioning_of<S>(e_.model, scratch.lengths, pose, J);
-  if (found && std::isfinite(value_of(*found))) return *found;
-  check(e_.model.info, scratch.lengths);
-  return S(kConditioning.value_if_undefined);  // if J is infinite, the pose is singular
+  auto& last = scratch.last;
+  if (last && is_equal(J, last->J) && has_equal_rotations(e_.model, pose, last->pose)) return last->conditioning;
+  std::optional<S> found = conditioning_of<S>(e_.model, scratch.lengths, pose, J);
+  if (!found || !std::isfinite(value_of(*found))) {
+    check(e_.model.info, scratch.lengths);
+    found = S(kConditioning.value_if_undefined);  // if J is infinite, the pose is singular
+  }
+  last = {pose, J, *found};
+  return *found;
 }
 
 template std::optional<double> conditioning_of(const Model&, const CharacteristicLengths<double>&, const Pose<double>&,

@@ -31,8 +31,17 @@ std::optional<S> conditioning_of(const Model& model, const CharacteristicLengths
 /// Scratch memory of SampleConditioning.
 template <class S>
 struct ConditioningScratch {
+  /// A sample with its Jacobian.
+  struct Sample {
+    Pose<S> pose;
+    AxisMatrix<S> J;
+    S conditioning;
+  };
   CharacteristicLengths<S> lengths;
   std::vector<S> registers;
+  /// The last sample of the design: successive samples often have the same Jacobian, which seldom depends on all
+  /// coordinates.
+  std::optional<Sample> last;
 };
 
 /// Evaluates the conditioning at the samples of a workspace analysis.
@@ -46,6 +55,7 @@ class SampleConditioning {
   void start(std::span<const S> parameters, const std::vector<S>& inputs, ConditioningScratch<S>& scratch) const {
     scratch.lengths = characteristic_lengths(e_, parameters);
     batch_.start<S>(inputs, scratch.registers);
+    scratch.last.reset();
   }
   /// Conditioning at a pose: a value of the field kConditioning. If J is not finite, the value is that of a singular
   /// pose.
