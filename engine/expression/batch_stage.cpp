@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/expression/implicit_system.hpp"
+#include "engine/expression/reverse_mode.hpp"
 
 namespace pkm::expression {
 
@@ -71,17 +72,16 @@ void sweep_other(const BatchStep& step, const double* registers, const double* r
   for (std::size_t k = 0; k < count; ++k) {
     const double adjoint = adjoints.rows[step.to * kRow + k];
     if (adjoint == 0) continue;
-    Dual4 arguments[kMaxArguments];
-    for (int i = 0; i < step.count; ++i) {
+    double arguments[kMaxArguments];
+    for (std::size_t i = 0; i < step.count; ++i) {
       const Operand& from = step.from[i];
-      arguments[i] = Dual4::variable(from.row ? rows[from.index * kRow + k] : registers[from.index], i);
+      arguments[i] = from.row ? rows[from.index * kRow + k] : registers[from.index];
     }
-    const Dual4 result = step.derivatives(arguments, step.count);
-    for (int i = 0; i < step.count; ++i) {
+    const auto partial = partial_derivatives(step.derivatives, arguments, step.count);
+    for (std::size_t i = 0; i < step.count; ++i) {
       const Operand& from = step.from[i];
-      const double contribution = adjoint * result.v[i];
-      if (!std::isfinite(contribution)) continue;
-      (from.row ? adjoints.rows[from.index * kRow + k] : adjoints.registers[from.index]) += contribution;
+      if (const double contribution = adjoint * partial[i]; std::isfinite(contribution))
+        (from.row ? adjoints.rows[from.index * kRow + k] : adjoints.registers[from.index]) += contribution;
     }
   }
 }

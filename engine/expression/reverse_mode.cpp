@@ -59,14 +59,22 @@ void backward_sweep(const Program& program, std::size_t stage, std::span<const d
         add(step->from[0], adjoint * 0.5 / registers[step->to]);
         break;
       default: {
-        Dual4 arguments[kMaxArguments];
-        for (int i = 0; i < step->count; ++i)
-          arguments[i] = Dual4::variable(registers[step->from[static_cast<std::size_t>(i)]], i);
-        const Dual4 result = std::get<Rule<Dual4>>(step->operation->rules)(arguments, step->count);
-        for (int i = 0; i < step->count; ++i) add(step->from[static_cast<std::size_t>(i)], adjoint * result.v[i]);
+        double arguments[kMaxArguments];
+        for (std::size_t i = 0; i < step->count; ++i) arguments[i] = registers[step->from[i]];
+        const auto partial = partial_derivatives(std::get<Rule<Dual4>>(step->operation->rules), arguments, step->count);
+        for (std::size_t i = 0; i < step->count; ++i) add(step->from[i], adjoint * partial[i]);
       }
     }
   }
+}
+
+std::array<double, kMaxArguments> partial_derivatives(Rule<Dual4> rule, const double* x, std::size_t count) {
+  Dual4 arguments[kMaxArguments];
+  for (std::size_t i = 0; i < count; ++i) arguments[i] = Dual4::variable(x[i], static_cast<int>(i));
+  const Dual4 result = rule(arguments, count);
+  std::array<double, kMaxArguments> partial{};
+  for (std::size_t i = 0; i < count; ++i) partial[i] = result.v[static_cast<int>(i)];
+  return partial;
 }
 
 double stage_derivative(const Program& program, std::size_t stage, std::uint32_t of, std::span<const double> registers,

@@ -20,6 +20,12 @@ namespace pkm::expression {
 void backward_sweep(const Program& program, std::size_t stage, std::span<const double> registers,
                     std::span<double> adjoints);
 
+/// Partial derivatives of an operation with respect to its arguments.
+/// @param rule   the rule of the operation for dual numbers
+/// @param x      values of the arguments
+/// @param count  their number, at most kMaxArguments
+std::array<double, kMaxArguments> partial_derivatives(Rule<Dual4> rule, const double* x, std::size_t count);
+
 /// The derivative of the register `of`, which a stage computes, with respect to the input of this stage; for several
 /// inputs, the sum of the partial derivatives.
 /// @param by  receives the derivatives of `of` with respect to the registers of the earlier stages, indexed by
