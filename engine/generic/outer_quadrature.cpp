@@ -57,7 +57,7 @@ Integral<double> OuterQuadrature::measure(std::size_t level, std::vector<double>
       sum.evaluations += found.evaluations;
       return found.value;
     };
-    // Where the first nodes find no workspace, the others look for it, too.
+    // If the workspace is empty at the first nodes, the remaining nodes are evaluated, too.
     const auto is_accurate = [&] {
       return cell.integral.value > 0 && cell.integral.error <= tolerance_ * cell.integral.value;
     };

@@ -9,15 +9,8 @@ using Matrix = std::array<Samples, kNodes>;
 
 /// Value of the Chebyshev polynomial T_k at the node with index n, if there are `nodes` nodes.
 double polynomial_at_node(std::size_t k, std::size_t n, std::size_t nodes) {
-  const std::size_t quarters = k * (2 * n + 1);  // of a revolution, times `nodes`: the angle
-  if (kNodes % nodes != 0)
-    return portable::cos(kPi * static_cast<double>(quarters % (4 * nodes)) / (2.0 * static_cast<double>(nodes)));
-  static const std::array<double, 4 * kNodes> cosines = [] {
-    std::array<double, 4 * kNodes> all;
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = portable::cos(kPi * static_cast<double>(i) / (2.0 * kNodes));
-    return all;
-  }();
-  return cosines[quarters * (kNodes / nodes) % cosines.size()];
+  const std::size_t quarters = k * (2 * n + 1) % (4 * nodes);  // of a revolution, times `nodes`: the angle
+  return portable::cos(kPi * static_cast<double>(quarters) / (2.0 * static_cast<double>(nodes)));
 }
 
 /// Row k contains the Chebyshev coefficients of T_k on [0, 1] as a function of x in [-1, 1]: T_(k+1)(y) = 2 y T_k(y) -
@@ -41,23 +34,14 @@ Matrix polynomials_on_upper_half() {
 
 }  // namespace
 
-double chebyshev_node(std::size_t n, std::size_t nodes) {
+const Samples& chebyshev_nodes(std::size_t nodes) {
   static const auto nodes_of = [](std::size_t count) {
     Samples all{};
-    for (std::size_t i = 0; i < count; ++i) all[i] = polynomial_at_node(1, i, count);
+    for (std::size_t n = 0; n < count; ++n) all[n] = polynomial_at_node(1, n, count);
     return all;
   };
   static const std::array<Samples, 4> tables{nodes_of(8), nodes_of(16), nodes_of(24), nodes_of(kNodes)};
-  return tables[nodes / 8 - 1][n];
-}
-
-const Samples& chebyshev_nodes() {
-  static const Samples nodes = [] {
-    Samples all;
-    for (std::size_t n = 0; n < kNodes; ++n) all[n] = chebyshev_node(n, kNodes);
-    return all;
-  }();
-  return nodes;
+  return tables[nodes / 8 - 1];
 }
 
 void to_coefficients(const Samples& values, Samples& coefficients) {

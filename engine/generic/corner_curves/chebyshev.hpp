@@ -19,14 +19,11 @@ inline constexpr double kUnitRoundoff = 0x1p-53;
 /// Values of a function at the kNodes Chebyshev nodes in [-1, 1], or the kNodes coefficients of its Chebyshev series.
 struct alignas(64) Samples : std::array<double, kNodes> {};
 
-/// The kNodes Chebyshev nodes in descending order.
-const Samples& chebyshev_nodes();
+/// The Chebyshev nodes in [-1, 1] in descending order. @param nodes  their number: 8, 16, 24 or kNodes
+const Samples& chebyshev_nodes(std::size_t nodes = kNodes);
 
 /// Computes the coefficients of the Chebyshev series that has the given values at the nodes.
 void to_coefficients(const Samples& values, Samples& coefficients);
-
-/// Coordinate in [-1, 1] of the Chebyshev node with index n, if there are `nodes` nodes (8, 16, 24 or kNodes).
-double chebyshev_node(std::size_t n, std::size_t nodes);
 
 /// Converts derivatives of a quantity with respect to Chebyshev coefficients to its derivatives with respect to values
 /// at `nodes` nodes (8, 16, 24 or kNodes), by the transpose of the interpolation. Valid for functions for which `nodes`

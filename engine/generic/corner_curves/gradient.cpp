@@ -63,7 +63,7 @@ void Volume::add_segment_gradient(const Segment& segment, Scratch& scratch) cons
                                {scratch.row_adjoints.data(), scratch.adjoints.data()});
   double by_lower = -segment.volume() / (range.upper - range.lower), by_upper = -by_lower;
   for (std::size_t n = 0; n < nodes; ++n) {
-    const double tau = chebyshev_node(n, nodes);
+    const double tau = chebyshev_nodes(nodes)[n];
     double by_t = at_nodes.limits.active.empty() ? 0 : add_limits_gradient(segment, n, tau, scratch);
     for (const std::uint32_t slot : outer_.stage->inputs())
       by_t += std::exchange(scratch.row_adjoints[slot * expression::kRow + n], 0);
@@ -147,7 +147,7 @@ void Volume::add_curve_gradient(const Segment& segment, std::size_t curve, std::
       }
       case Kind::lower_root:
       case Kind::upper_root: {
-        const double tau = chebyshev_node(n, nodes);
+        const double tau = chebyshev_nodes(nodes)[n];
         const auto value = [&](std::size_t k) {
           return evaluate_series(boundary.series[k].data(), boundary.terms, tau);
         };

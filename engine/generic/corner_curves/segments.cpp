@@ -119,8 +119,10 @@ class Divider {
       for (std::size_t n = 0; n < kNodes; ++n)
         s_.functions[f].values[n] = function.value({arguments[0][n], arguments[1][n], arguments[2][n]});
     }
-    // The frame and the formula read the registers.
-    run_outer_stage(plan_, map_node(range, 0.5 * (1 + chebyshev_nodes()[kNodes - 1])).point, r);
+    // The frame and the formula read the registers: those at the last node.
+    for (std::uint32_t at = 0; at < r.size(); ++at)
+      if (const expression::Operand operand = outer_.stage->operand(at); operand.row)
+        r[at] = s_.rows[operand.index * expression::kRow + kNodes - 1];
     s_.runs += static_cast<long>(kNodes);
   }
 
@@ -164,7 +166,7 @@ class Divider {
     return status;
   }
 
-  /// The square frame around the box of v and z for the value of t at which the program was evaluated last.
+  /// The square frame around the box of v and z at the last node.
   Frame frame() const {
     const auto& r = s_.registers;
     const double v = r[plan_.range[1][1]] - r[plan_.range[1][0]], z = r[plan_.range[2][1]] - r[plan_.range[2][0]];
@@ -188,7 +190,7 @@ void run_outer_stage(const OuterPlan& outer, const OuterRange& range, std::size_
                      std::span<const double> registers, expression::Rows& rows) {
   rows.resize(outer.stage->slots() * expression::kRow);
   for (std::size_t n = 0; n < nodes; ++n) {
-    const double t = map_node(range, 0.5 * (1 + chebyshev_node(n, nodes))).point;
+    const double t = map_node(range, 0.5 * (1 + chebyshev_nodes(nodes)[n])).point;
     for (const std::uint32_t slot : outer.stage->inputs()) rows[slot * expression::kRow + n] = t;
   }
   outer.stage->run(registers.data(), rows.data(), nodes);
