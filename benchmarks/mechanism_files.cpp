@@ -1,6 +1,7 @@
 // Generic engine (mechanism files): reading files, and workspace analyses compared with hand-written loops over the
 // same formulas.
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -207,6 +208,30 @@ void coupling(benchmark::State& state, const std::string& name) {
 BENCHMARK_CAPTURE(coupling, built_in, "built-in 3crr-r-cru")->Name("mechanism_file/coupling/built-in_3crr-r-cru");
 BENCHMARK_CAPTURE(coupling, crr, "3crr-r-cru")->Name("mechanism_file/coupling/3crr-r-cru");
 BENCHMARK_CAPTURE(coupling, delta, "rotary-delta")->Name("mechanism_file/coupling/rotary-delta");
+
+// Exact volumes of (3CRR/R)&CRU by closed forms and by the generic engine, which evaluates the mechanism file, with one
+// coordinate fixed, without and with values of the conditioning.
+void closed_forms(benchmark::State& state, bool conditioning) {
+  const SerialScope alone;
+  const Mechanism &built_in = find_mechanism("built-in 3crr-r-cru"), &file = mechanism_file("3crr-r-cru");
+  const WorkspacePlan plan{.method = ColumnOptions{},
+                           .fixed = {fixed_at(static_cast<int>(state.range(0)), state.range(0) == 3 ? 0.3 : 0.1)},
+                           .limits = no_limits(file.info())};
+  FieldRequest request;
+  if (conditioning) request.add(kConditioning);
+  const auto by_closed_forms = prepare_workspace(built_in, plan, request),
+             by_file = prepare_workspace(file, plan, request);
+  const std::vector<double> design = nominal(file);
+  Scratch scratch, scratch_of_file;
+  WorkspaceResult<double> result, of_file;
+  const PairedTimes times = time_alternately(
+      state, "closed_forms_s", [&] { by_closed_forms->evaluate(design, scratch, result); }, "file_s",
+      [&] { by_file->evaluate(design, scratch_of_file, of_file); });
+  if (!(std::fabs(result.volume / of_file.volume - 1) < 1e-7)) state.SkipWithError("different volumes");
+  state.counters["of_file"] = times.ratio();
+}
+BENCHMARK_CAPTURE(closed_forms, volume, false)->Name("crr_cru/columns_of_file/fixed")->DenseRange(0, 3);
+BENCHMARK_CAPTURE(closed_forms, conditioning, true)->Name("crr_cru/conditioning_of_file/fixed")->DenseRange(0, 3);
 
 // Drive forces of states along a motion; `per_pose` is the time per state.
 void inverse_dynamics(benchmark::State& state, const std::string& name) {
